@@ -103,7 +103,7 @@ fn compare(pool: &Pool, name: &str, scene: &Scene, table: &mut Table) -> f64 {
         times.push(seconds[1]);
     }
     let film = last.expect("a film");
-    let [lamps, hidden] = film.reach.map_or([0; 2], |r| [r.lamps, r.hidden]);
+    let [lamps, hidden] = film.lamp_visibility.map_or([0; 2], |r| [r.lamps, r.hidden]);
     table.row([
         name.to_string(),
         lamps.to_string(),

@@ -63,7 +63,7 @@ fn main() {
 fn outcome(body: &Body, number: usize) -> Outcome {
     let case = Case::new(body, number, SEED, NOISE);
     let hooks: Vec<DVec2> = case.suspension.into_iter().collect();
-    let input = Input { camera: &case.shot.camera, shifted: &[], suspensions: &hooks, known: Known::Nothing };
+    let input = Input { camera: &case.shot.camera, shifted: &[], suspensions: &hooks, known: Known::NoLength };
     let params = Params { distance: case.ceiling.max(0.01), ..Params::default() };
     let outlines = [case.outline.clone()];
     let run = || fixture::from_outlines(&outlines, &input, &params, Monitor::default().job());
@@ -120,7 +120,7 @@ fn of_renderings() {
 
 fn of_rendering(body: &Body, name: &str, setup: &Setup) -> Vec<String> {
     let shot = photograph(body, setup);
-    let input = Input { camera: &shot.camera, shifted: &[], suspensions: &[shot.hook], known: Known::Nothing };
+    let input = Input { camera: &shot.camera, shifted: &[], suspensions: &[shot.hook], known: Known::NoLength };
     let params = Params { distance: shot.ceiling, ..Params::default() };
     let diameter = 2.0 * body.profile().iter().map(|v| v.x).fold(0.0, f64::max);
     let is_lit = |x: usize| (0..shot.mask.height).any(|y| shot.mask.pixel(x, y)[0] > 0.5);

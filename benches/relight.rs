@@ -12,7 +12,7 @@ use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight::{
-    Aspect, Constraint, Goal, GroupParams, Importance, ImportanceParams, Input, Lamps, Params, PlacementParams,
+    Aspect, Constraint, EmissionLamps, Goal, GroupParams, Importance, ImportanceParams, Input, Params, PlacementParams,
     Quantity, Solution, TargetGeometry, lamp_responses, run, solve_groups,
 };
 use luxfer::render::World;
@@ -329,7 +329,7 @@ fn lamps() {
     let solve = |scene: &Arc<Scene>| {
         let monitor = Monitor::default();
         let world = World::build(scene.clone(), monitor.job()).expect("a valid scene");
-        let lamps = Lamps::of_texture(&scene.textures[0].image).expect("lamps");
+        let lamps = EmissionLamps::of_texture(&scene.textures[0].image).expect("lamps");
         let responses =
             lamp_responses(&world, 1, &lamps, &goals, &Params::default(), monitor.job()).expect("responses");
         let solution = solve_groups(&responses, &goals, &GroupParams::default(), monitor.job()).expect("powers");

@@ -338,7 +338,7 @@ fn border_error(mask: &Image, truth: &Image) -> f64 {
         let differs = |u: usize, v: usize| u < width && v < height && is_in(u, v) != is_in(x, y);
         [f32::from(differs(x + 1, y) || differs(x, y + 1))]
     });
-    let near = segment::dilate(&border.unwrap(), 4.0, Monitor::default().job()).unwrap();
+    let near = luxfer::image::dilate(&border.unwrap(), 4.0, Monitor::default().job()).unwrap();
     let at: Vec<usize> = (0..width * height).filter(|&i| near.data[i] > 0.5).collect();
     let wrong = at.iter().filter(|&&i| (mask.data[i] > 0.5) != (truth.data[i] > 0.5)).count();
     wrong as f64 / at.len().max(1) as f64

@@ -10,10 +10,10 @@
 //!
 //! [`transfer`] runs the first pipeline and passes data between its stages. The stages do not depend on each other.
 //! [`plan`] chooses settings for a target error or time: those of `relight` and `render`, or those of `stylize`. `ffi`
-//! is the C boundary, and the only module that deals with C. Both pipelines use these modules: [`scene`] (description,
-//! glTF, acceleration), [`render`] (light transport), `patch` (nearest-neighbour fields), [`image`], [`geometry`],
-//! [`photometry`] (colour temperature, glare, luminaire files), `network` (ONNX files). `tests/layering.rs` checks the
-//! dependencies between modules.
+//! is the C boundary, and the only module that deals with C. Both pipelines use these modules: [`accel`] (ray
+//! queries), [`scene`] (description, glTF), [`render`] (light transport), `patch` (nearest-neighbour fields),
+//! [`image`], [`geometry`], [`photometry`] (colour temperature, glare, luminaire files), `network` (ONNX files).
+//! `tests/layering.rs` checks the dependencies between modules.
 //!
 //! Every stage has the same interface: `Params` with defaults, ranges and units; an input; an output with an estimate
 //! of its own error; and a function that runs the stage. The function takes a [`job::Job`], which reports progress and
@@ -51,6 +51,7 @@
     )
 )]
 
+pub mod accel;
 pub mod error;
 pub mod exec;
 pub mod geometry;

@@ -1,6 +1,6 @@
 //! A memory reserve, from which small allocations are served when the system has no memory left.
 //!
-//! Allocations that grow with the input use fallible functions ([`list`], [`make_room`]), whose failure becomes
+//! Allocations that grow with the input use fallible functions ([`list`], [`reserve_capacity`]), whose failure becomes
 //! `LUXFER_OUT_OF_MEMORY`. Small allocations (names, messages, thread queues, rows in a codec) are infallible: if the
 //! system cannot serve one of them, Rust aborts the process, and the host with it. The library therefore keeps a
 //! reserve of 8 MiB, which occupies no physical memory until it is used. The reserve serves small allocations that the
@@ -54,7 +54,7 @@ pub fn list<T>(len: usize) -> Option<Vec<T>> {
 
 /// Ensures capacity for `more` further items; returns false if there is no memory. If the capacity grows, it at least
 /// doubles.
-pub fn make_room<T>(items: &mut Vec<T>, more: usize) -> bool {
+pub fn reserve_capacity<T>(items: &mut Vec<T>, more: usize) -> bool {
     if items.capacity() - items.len() >= more {
         return true;
     }
@@ -275,7 +275,7 @@ mod tests {
         let mut items = list::<u32>(3).unwrap();
         assert!(items.capacity() >= 3 && items.is_empty());
         for item in 0..200_000 {
-            assert!(make_room(&mut items, 1));
+            assert!(reserve_capacity(&mut items, 1));
             let storage = items.as_ptr();
             items.push(item);
             assert_eq!(items.as_ptr(), storage);
@@ -283,7 +283,9 @@ mod tests {
         assert!(items.iter().zip(0..).all(|(item, i)| *item == i));
         assert!(list::<u32>(0).is_some() && list::<()>(9).is_some() && has_room(1 << 16));
         assert!(
-            list::<u32>(usize::MAX).is_none() && !has_room(usize::MAX / 2) && !make_room(&mut items, usize::MAX / 4)
+            list::<u32>(usize::MAX).is_none()
+                && !has_room(usize::MAX / 2)
+                && !reserve_capacity(&mut items, usize::MAX / 4)
         );
         assert_eq!(items.len(), 200_000);
     }

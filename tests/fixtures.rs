@@ -38,7 +38,7 @@ fn simple_bodies_are_exact() {
         let ceiling = centre.z + 1.0;
         let hook = shot.pixel(centre.truncate().extend(ceiling));
         let params = Params { distance: ceiling, ..Params::default() };
-        let found = &fit(&shot, &[outline], &[hook], Known::Nothing, params).unwrap()[0];
+        let found = &fit(&shot, &[outline], &[hook], Known::NoLength, params).unwrap()[0];
         let diameter = 2.0 * body.profile().iter().map(|v| v.x).fold(0.0, f64::max);
         assert_eq!(found.kind, body.kind, "{}", body.name);
         assert!(near(found.aspect.value, body.height / diameter, 0.005), "{}: {:?}", body.name, found.aspect);
@@ -68,11 +68,11 @@ fn the_size_needs_a_known_length() {
     let params = Params { distance: ceiling, level: true, ..Params::default() };
     let run = |hooks: &[DVec2], known| fit(&shot, &outlines, hooks, known, params).unwrap().remove(0);
 
-    let open = run(&[], Known::Nothing);
+    let open = run(&[], Known::NoLength);
     let drop = open.lamps[0].drop;
     assert!(!open.is_metric && drop.value.is_nan() && drop.low == 0.0 && drop.high == ceiling, "{drop:?}");
     let lengths = [Known::Drop(ceiling - top), Known::Diameter(0.4), Known::Spacing(spacing)];
-    let known = lengths.into_iter().map(|known| run(&[], known)).chain([run(&[hook], Known::Nothing)]);
+    let known = lengths.into_iter().map(|known| run(&[], known)).chain([run(&[hook], Known::NoLength)]);
     for found in known {
         assert!(near(found.diameter.value, 0.4, 0.005), "{:?}", found.diameter);
         for (lamp, centre) in found.lamps.iter().zip(centres) {
@@ -89,7 +89,7 @@ fn a_lamp_below_the_horizon_has_an_unbounded_drop() {
     let shot = Shot::new(-10.0, 0.0, 35.0);
     let centre = 3.0 * shot.ray(DVec2::new(800.0, 700.0)).normalize();
     let outline = shot.outline(body("globe"), centre, 120, 0.0, &mut Rng::new(1, &[]));
-    let found = &fit(&shot, &[outline], &[], Known::Nothing, Params::default()).unwrap()[0];
+    let found = &fit(&shot, &[outline], &[], Known::NoLength, Params::default()).unwrap()[0];
     let drop = found.lamps[0].drop;
     assert!(drop.value.is_nan() && drop.low == 1.0 && drop.high == f64::INFINITY, "{drop:?}");
     assert_eq!(found.diameter.high, f64::INFINITY);
@@ -104,7 +104,7 @@ fn intervals_hold_the_truth() {
         let case = Case::new(body, number, 11, 0.4);
         let Some(hook) = case.suspension else { continue };
         let params = Params { distance: case.ceiling, ..Params::default() };
-        let found = fit(&case.shot, &[case.outline.clone()], &[hook], Known::Nothing, params).unwrap().remove(0);
+        let found = fit(&case.shot, &[case.outline.clone()], &[hook], Known::NoLength, params).unwrap().remove(0);
         let drop = found.lamps[0].drop;
         right += usize::from(found.kind == body.kind);
         held += usize::from(drop.low < case.drop(body) && case.drop(body) < drop.high);
@@ -145,7 +145,7 @@ fn intervals_hold_errors_of_the_camera() {
         let (camera, cameras) = estimated(&case.shot.camera, &mut Rng::new(5, &[number as u64]));
         let params = Params { distance: case.ceiling, ..Params::default() };
         for (held, shifted) in held.iter_mut().zip([&[][..], &cameras[..]]) {
-            let input = Input { camera: &camera, shifted, suspensions: &[hook], known: Known::Nothing };
+            let input = Input { camera: &camera, shifted, suspensions: &[hook], known: Known::NoLength };
             let outlines = [case.outline.clone()];
             let found = fixture::from_outlines(&outlines, &input, &params, Monitor::default().job()).unwrap();
             let drop = found[0].lamps[0].drop;
@@ -268,7 +268,7 @@ fn meshes_are_closed_and_stand_in_the_scene() {
 fn bad_input_is_refused_with_advice() {
     let shot = Shot::new(0.0, 0.0, 35.0);
     let photo = Image::new(64, 64, 3).unwrap();
-    let input = Input { camera: &shot.camera, shifted: &[], suspensions: &[], known: Known::Nothing };
+    let input = Input { camera: &shot.camera, shifted: &[], suspensions: &[], known: Known::NoLength };
     let run =
         |mask: &Image| fixture::run(&photo, mask, &input, &Params::default(), Monitor::default().job()).unwrap_err();
     let painted =
@@ -293,21 +293,21 @@ fn bad_input_is_refused_with_advice() {
     let star: Vec<DVec2> = (0..200).map(star).collect();
     let refused =
         |known, params, outline: &[DVec2]| fit(&shot, &[outline.to_vec()], &[], known, params).map(|_| ()).unwrap_err();
-    assert_eq!(refused(Known::Nothing, Params::default(), &star).kind, ErrorKind::Degenerate);
+    assert_eq!(refused(Known::NoLength, Params::default(), &star).kind, ErrorKind::Degenerate);
     let wrong = [
         (Known::Drop(f64::NAN), Params::default()),
         (Known::Drop(1.0), Params::default()),
         (Known::Diameter(-1.0), Params::default()),
-        (Known::Nothing, Params { distance: f64::NAN, ..Params::default() }),
-        (Known::Nothing, Params { suspension_error: 0.0, ..Params::default() }),
+        (Known::NoLength, Params { distance: f64::NAN, ..Params::default() }),
+        (Known::NoLength, Params { suspension_error: 0.0, ..Params::default() }),
     ];
     for (known, params) in wrong {
         assert_eq!(refused(known, params, &star).kind, ErrorKind::InvalidArgument);
     }
-    let two = fit(&shot, &[star.clone()], &[star[0], star[50]], Known::Nothing, Params::default()).map(|_| ());
+    let two = fit(&shot, &[star.clone()], &[star[0], star[50]], Known::NoLength, Params::default()).map(|_| ());
     assert!(two.unwrap_err().message.contains("suspensions 0 and 1 are both nearest to lamp 0"));
-    assert_eq!(refused(Known::Nothing, Params::default(), &[DVec2::NAN; 30]).kind, ErrorKind::InvalidArgument);
-    assert_eq!(refused(Known::Nothing, Params::default(), &star[..5]).kind, ErrorKind::InvalidArgument);
+    assert_eq!(refused(Known::NoLength, Params::default(), &[DVec2::NAN; 30]).kind, ErrorKind::InvalidArgument);
+    assert_eq!(refused(Known::NoLength, Params::default(), &star[..5]).kind, ErrorKind::InvalidArgument);
 }
 
 /// Straight below a lamp, its outline is a circle: the interval of its height says that it may be anything.

@@ -3,10 +3,10 @@
 use super::dice::Dice;
 use super::room::{Class, Room};
 use glam::{DMat3, DVec2, DVec3, Vec2, Vec3};
+use luxfer::accel::{Accel, Ray};
 use luxfer::geometry::Homography;
 use luxfer::job::Monitor;
 use luxfer::scene::Camera;
-use luxfer::scene::accel::{Accel, Ray};
 
 /// Diagonal in mm of the 36 × 24 mm picture format for which focal lengths are given. [convention]
 const DIAGONAL: f32 = 43.27;

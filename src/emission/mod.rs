@@ -35,6 +35,7 @@
 
 mod agreement;
 mod analysis;
+mod camera_distance;
 mod compose;
 mod exemplar;
 mod lamps;
@@ -43,12 +44,14 @@ mod measure;
 mod output;
 mod params;
 mod quilt;
+mod sizing;
 #[cfg(test)]
 mod tests;
 mod warnings;
 
 pub use agreement::{pairs, statistics};
 pub use analysis::Choice;
+pub use camera_distance::CameraDistance;
 pub use compose::composition::Composition;
 pub use compose::lamp_list::LampList;
 pub use compose::texel_zone::TexelZone;
@@ -59,6 +62,7 @@ pub use lattice::law::Law;
 pub use measure::{Measurements, measure};
 pub use output::Emission;
 pub use params::{Input, LawMode, Params, SCALES};
+pub use sizing::{Scale, Sizing, TexelGrid};
 
 use crate::error::{Error, Result};
 use crate::geometry::Homography;

@@ -65,8 +65,8 @@ impl Design {
 /// The statistics of a texture, compared with its exemplar.
 #[derive(Debug)]
 struct Score {
-    /// Two ratios of texture to exemplar. `density`: number of lamps per area. `area`: mean area of a lamp.
-    density: f64,
+    /// Two ratios of texture to exemplar. `count_ratio`: number of lamps per area. `area`: mean area of a lamp.
+    count_ratio: f64,
     area: f64,
     /// `cut`: number of lamps inside the texture that are smaller than 70 % of the exemplar's smallest lamp. `merged`:
     /// number of lamps that are larger than 130 % of its largest lamp.
@@ -95,7 +95,7 @@ fn score(result: &Emission, per_area: f64, areas: (f64, f64, f64), basis: Option
     let centres: Vec<DVec2> = lamps.iter().map(|l| l.centre).collect();
     let phase = basis.map_or(0.0, |basis| statistics::phase(&centres, basis));
     Score {
-        density: lit / mean / (width * height) as f64 / per_area,
+        count_ratio: lit / mean / (width * height) as f64 / per_area,
         area: mean / areas.1,
         cut: lamps.iter().filter(|l| l.area < 0.7 * areas.0).count(),
         merged: lamps.iter().filter(|l| l.area > 1.3 * areas.2).count(),
@@ -108,7 +108,7 @@ fn grid(px: f64, py: f64, w: f64, h: f64) -> impl Fn(f64, f64) -> bool {
 }
 
 fn check(name: &str, s: &Score) {
-    let fine = (s.density - 1.0).abs() < 0.05 && (s.area - 1.0).abs() < 0.05 && s.cut == 0 && s.merged == 0;
+    let fine = (s.count_ratio - 1.0).abs() < 0.05 && (s.area - 1.0).abs() < 0.05 && s.cut == 0 && s.merged == 0;
     assert!(fine && s.phase < 0.02, "{name}: {s:?}");
 }
 
@@ -235,7 +235,7 @@ fn scattered_lamps_stay_whole_and_as_many() {
     let deviation = (areas.iter().map(|a| (a / mean - 1.0).powi(2)).sum::<f64>() / areas.len() as f64).sqrt();
     let allowed = 3.0 * deviation / (areas.len() as f64).sqrt();
     assert!(s.cut == 0 && s.merged == 0, "{s:?}");
-    assert!((s.density - 1.0).abs() < allowed && (s.area - 1.0).abs() < allowed, "{s:?} {allowed}");
+    assert!((s.count_ratio - 1.0).abs() < allowed && (s.area - 1.0).abs() < allowed, "{s:?} {allowed}");
     assert!(result.error < 0.1, "{}", result.error);
 }
 

@@ -13,7 +13,7 @@ use super::pointer::{Out, bytes, bytes_mut, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::photo::PhotoMetadata;
-use crate::image::view::{ColourSpace, Layout, Sample};
+use crate::image::view::{ColourSpace, PixelLayout, Sample};
 use crate::image::{Image, io, view};
 use std::ffi::{c_char, c_void};
 use std::path::Path;
@@ -98,7 +98,7 @@ versioned!(luxfer_image_view, [VIEW_SIZE], {
 });
 
 impl luxfer_image_view {
-    fn layout(&self) -> Result<Layout> {
+    fn layout(&self) -> Result<PixelLayout> {
         let sample = match self.sample {
             LUXFER_SAMPLE_U8 => Sample::U8,
             LUXFER_SAMPLE_U16 => Sample::U16,
@@ -112,7 +112,7 @@ impl luxfer_image_view {
                 self.flags, self.reserved
             )));
         }
-        let layout = Layout {
+        let layout = PixelLayout {
             sample,
             channels: self.channels as usize,
             colour_space: colour_space("view.colour_space", self.colour_space)?,

@@ -17,7 +17,7 @@ use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{
-    self, Colour, Goal, GroupParams, GroupSolution, Lamps, Quantity, Responses, lamp_responses, solve_groups,
+    self, Colour, EmissionLamps, Goal, GroupParams, GroupSolution, Quantity, Responses, lamp_responses, solve_groups,
 };
 use crate::scene::Scene;
 use glam::Vec3;
@@ -118,7 +118,7 @@ pub(super) struct Output {
     pub scene: Arc<Scene>,
     /// Index of the emitting material whose regions are the lamps; `None` if the lamps are the punctual lights.
     pub material: Option<usize>,
-    pub lamps: Lamps,
+    pub lamps: EmissionLamps,
     pub group_of: Vec<u32>,
     pub responses: Responses,
     pub targets: Vec<Vec3>,
@@ -231,15 +231,15 @@ impl luxfer_lamps_params {
         Ok(())
     }
 
-    fn lamps(&self, scene: &Scene, material: Option<usize>) -> Result<Lamps> {
-        let Some(material) = material else { return Lamps::of_lights(scene) };
+    fn lamps(&self, scene: &Scene, material: Option<usize>) -> Result<EmissionLamps> {
+        let Some(material) = material else { return EmissionLamps::of_lights(scene) };
         match scene.materials[material].emission_texture {
-            Some(map) => Lamps::of_texture(&scene.textures[map.texture].image),
-            None => Lamps::of_meshes(scene, material),
+            Some(map) => EmissionLamps::of_texture(&scene.textures[map.texture].image),
+            None => EmissionLamps::of_meshes(scene, material),
         }
     }
 
-    fn groups(&self, lamps: &Lamps) -> (Vec<u32>, usize) {
+    fn groups(&self, lamps: &EmissionLamps) -> (Vec<u32>, usize) {
         match self.group {
             LUXFER_GROUP_ALL => lamps.together(),
             LUXFER_GROUP_EACH => lamps.each(),

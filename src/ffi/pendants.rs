@@ -149,7 +149,7 @@ impl luxfer_pendants_params {
 
     fn known(&self) -> Result<Known> {
         match self.known {
-            LUXFER_KNOWN_NOTHING if self.known_length == 0.0 => Ok(Known::Nothing),
+            LUXFER_KNOWN_NOTHING if self.known_length == 0.0 => Ok(Known::NoLength),
             LUXFER_KNOWN_NOTHING => Err(Error::argument(format!(
                 "known_length is {} and known is LUXFER_KNOWN_NOTHING; set known to the meaning of the length",
                 self.known_length

@@ -8,10 +8,10 @@ use super::handle::Owned;
 use super::pointer::{bytes, bytes_mut, floats};
 use super::scene::luxfer_scene;
 use super::status::luxfer_status;
+use crate::accel::Ray;
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::render::World;
-use crate::scene::accel::Ray;
 use glam::Vec3;
 
 /// No index: stands for no mesh, no triangle, no texture or no material.

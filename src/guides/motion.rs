@@ -82,8 +82,8 @@ pub fn deviation(given: &Image, now: &Surfaces, before: &Surfaces, job: Job) -> 
             (given[0] - exact[0]).hypot(given[1] - exact[1])
         };
         // `f32::min` ignores NaN, so the minimum is infinite if the given motion is NaN. Such pixels are left out.
-        let least = neighbourhood([x, y], size).map(error).fold(f32::INFINITY, f32::min);
-        least.is_finite().then_some(least)
+        let min_error = neighbourhood([x, y], size).map(error).fold(f32::INFINITY, f32::min);
+        min_error.is_finite().then_some(min_error)
     })
 }
 

@@ -48,7 +48,7 @@ pub fn try_collect<T>(items: impl IntoIterator<Item = T>) -> Result<Vec<T>> {
 
 /// Appends an item, or returns an error if memory is short.
 pub fn try_push<T>(data: &mut Vec<T>, item: T) -> Result<()> {
-    make_room(data, 1)?;
+    reserve_capacity(data, 1)?;
     data.push(item);
     Ok(())
 }
@@ -56,8 +56,8 @@ pub fn try_push<T>(data: &mut Vec<T>, item: T) -> Result<()> {
 /// Ensures capacity for `more` further items, or returns an error if memory is short. The capacity at least doubles
 /// when it grows.
 #[inline]
-pub(crate) fn make_room<T>(data: &mut Vec<T>, more: usize) -> Result<()> {
-    if reserve::make_room(data, more) { Ok(()) } else { Err(no_memory::<T>(data.len().saturating_add(more))) }
+pub(crate) fn reserve_capacity<T>(data: &mut Vec<T>, more: usize) -> Result<()> {
+    if reserve::reserve_capacity(data, more) { Ok(()) } else { Err(no_memory::<T>(data.len().saturating_add(more))) }
 }
 
 /// Returns the error for a failed allocation of `len` items.

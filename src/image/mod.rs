@@ -8,6 +8,7 @@ mod buffer;
 pub mod colour;
 mod comparison;
 mod containers;
+mod dilation;
 pub mod file_colour;
 mod files;
 mod format;
@@ -30,7 +31,8 @@ pub mod view;
 mod working;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
-pub(crate) use buffer::{make_room, no_memory};
+pub(crate) use buffer::{no_memory, reserve_capacity};
 pub use comparison::{Comparison, neighbourhood};
+pub use dilation::dilate;
 pub use memory::check as check_memory;
 pub use planes::{deinterleave, deinterleave_of, interleave};

@@ -9,9 +9,9 @@ use glam::{Mat4, Vec4};
 pub fn deinterleave<const N: usize>(pixels: &[f32], planes: &mut [[f32; N]]) {
     let (channels, count) = (planes.len(), pixels.len() / planes.len());
     let whole = if channels < 4 { 0 } else { count / 4 * 4 };
-    for (four, k) in pixels.chunks_exact(4 * channels).zip((0..whole).step_by(4)) {
+    for (quad, k) in pixels.chunks_exact(4 * channels).zip((0..whole).step_by(4)) {
         for c in starts(channels) {
-            let rows = [0, 1, 2, 3].map(|i| Vec4::from_slice(&four[i * channels + c..][..4]));
+            let rows = [0, 1, 2, 3].map(|i| Vec4::from_slice(&quad[i * channels + c..][..4]));
             let columns = Mat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
             for i in 0..4 {
                 columns.col(i).write_to_slice(&mut planes[c + i][k..k + 4]);
@@ -32,10 +32,10 @@ pub fn deinterleave_of<const C: usize, const N: usize>(
     of: impl Fn(usize, Vec4) -> Vec4,
 ) {
     let (whole, rest) = pixels.as_chunks::<C>();
-    let (fours, last) = whole.as_chunks::<4>();
-    for (k, four) in fours.iter().enumerate().take(N / 4) {
+    let (quads, last) = whole.as_chunks::<4>();
+    for (k, quad) in quads.iter().enumerate().take(N / 4) {
         for c in starts(C) {
-            let [a, b, d, e] = four.each_ref().map(|pixel| Vec4::from_slice(&pixel[c..c + 4]));
+            let [a, b, d, e] = quad.each_ref().map(|pixel| Vec4::from_slice(&pixel[c..c + 4]));
             let columns = Mat4::from_cols(a, b, d, e).transpose();
             for i in 0..4 {
                 of(c + i, columns.col(i)).write_to_slice(&mut planes[c + i][4 * k..4 * k + 4]);
@@ -45,7 +45,7 @@ pub fn deinterleave_of<const C: usize, const N: usize>(
     debug_assert!(rest.is_empty());
     for (k, pixel) in last.iter().enumerate() {
         for (c, plane) in planes.iter_mut().enumerate() {
-            plane[4 * fours.len() + k] = of(c, Vec4::splat(pixel[c])).x;
+            plane[4 * quads.len() + k] = of(c, Vec4::splat(pixel[c])).x;
         }
     }
 }
@@ -55,12 +55,12 @@ pub fn deinterleave_of<const C: usize, const N: usize>(
 pub fn interleave<const N: usize>(planes: &[[f32; N]], pixels: &mut [f32]) {
     let (channels, count) = (planes.len(), pixels.len() / planes.len());
     let whole = if channels < 4 { 0 } else { count / 4 * 4 };
-    for (four, k) in pixels.chunks_exact_mut(4 * channels).zip((0..whole).step_by(4)) {
+    for (quad, k) in pixels.chunks_exact_mut(4 * channels).zip((0..whole).step_by(4)) {
         for c in starts(channels) {
             let columns = [0, 1, 2, 3].map(|i| Vec4::from_slice(&planes[c + i][k..k + 4]));
             let rows = Mat4::from_cols(columns[0], columns[1], columns[2], columns[3]).transpose();
             for i in 0..4 {
-                rows.col(i).write_to_slice(&mut four[i * channels + c..][..4]);
+                rows.col(i).write_to_slice(&mut quad[i * channels + c..][..4]);
             }
         }
     }

@@ -34,9 +34,9 @@ pub enum ColourSpace {
     Srgb,
 }
 
-/// The layout of an image in the caller's memory. Integer samples stand for `[0, 1]`.
+/// Size, sample format and strides of an image in the caller's memory. Integer samples stand for `[0, 1]`.
 #[derive(Clone, Copy, Debug)]
-pub struct Layout {
+pub struct PixelLayout {
     pub sample: Sample,
     pub channels: usize,
     pub colour_space: ColourSpace,
@@ -50,7 +50,7 @@ pub struct Layout {
     pub bottom_up: bool,
 }
 
-impl Layout {
+impl PixelLayout {
     /// Replaces strides of 0 by their values, and checks that all pixels fit into `byte_size` bytes.
     pub fn checked(mut self, byte_size: usize) -> Result<Self> {
         let side = |name: &str, v: usize| {
@@ -110,7 +110,7 @@ impl Layout {
 }
 
 /// Reads the caller's pixels as linear values. NaN and infinity are kept; the stages that use the image handle them.
-pub fn read(layout: Layout, bytes: &[u8]) -> Result<Image> {
+pub fn read(layout: PixelLayout, bytes: &[u8]) -> Result<Image> {
     let layout = layout.checked(bytes.len())?;
     let mut image = Image::new(layout.width, layout.height, layout.channels)?;
     let table = srgb8_table();
@@ -138,7 +138,7 @@ pub fn read(layout: Layout, bytes: &[u8]) -> Result<Image> {
 
 /// Writes linear values to the caller's pixels. For integer samples, values are clamped to `[0, 1]` and rounded, and
 /// NaN becomes 0.
-pub fn write(image: &Image, layout: Layout, bytes: &mut [u8]) -> Result<()> {
+pub fn write(image: &Image, layout: PixelLayout, bytes: &mut [u8]) -> Result<()> {
     let layout = layout.checked(bytes.len())?;
     if (image.width, image.height, image.channels) != (layout.width, layout.height, layout.channels) {
         return Err(Error::argument(format!(
@@ -167,8 +167,8 @@ pub fn write(image: &Image, layout: Layout, bytes: &mut [u8]) -> Result<()> {
 mod tests {
     use super::*;
 
-    fn layout(sample: Sample, colour_space: ColourSpace) -> Layout {
-        Layout {
+    fn layout(sample: Sample, colour_space: ColourSpace) -> PixelLayout {
+        PixelLayout {
             sample,
             channels: 3,
             colour_space,
@@ -187,7 +187,7 @@ mod tests {
         {
             for space in [ColourSpace::Linear, ColourSpace::Srgb] {
                 for bottom_up in [false, true] {
-                    let layout = Layout { pixel_stride: 16, row_stride: 80, bottom_up, ..layout(sample, space) };
+                    let layout = PixelLayout { pixel_stride: 16, row_stride: 80, bottom_up, ..layout(sample, space) };
                     let mut bytes = vec![0; 80 * 3];
                     write(&image, layout, &mut bytes).unwrap();
                     let back = read(layout, &bytes).unwrap();
@@ -205,13 +205,13 @@ mod tests {
         assert!(good.checked(4 * 3 * 12).is_ok());
         assert!(good.checked(4 * 3 * 12 - 1).is_err());
         for bad in [
-            Layout { pixel_stride: 11, ..good },
-            Layout { row_stride: 47, ..good },
-            Layout { width: 0, ..good },
-            Layout { height: MAX_SIDE + 1, ..good },
-            Layout { channels: 5, ..good },
-            Layout { row_stride: usize::MAX, ..good },
-            Layout { pixel_stride: usize::MAX / 2, ..good },
+            PixelLayout { pixel_stride: 11, ..good },
+            PixelLayout { row_stride: 47, ..good },
+            PixelLayout { width: 0, ..good },
+            PixelLayout { height: MAX_SIDE + 1, ..good },
+            PixelLayout { channels: 5, ..good },
+            PixelLayout { row_stride: usize::MAX, ..good },
+            PixelLayout { pixel_stride: usize::MAX / 2, ..good },
         ] {
             assert!(bad.checked(usize::MAX).is_err(), "{bad:?}");
         }

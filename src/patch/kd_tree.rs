@@ -129,7 +129,7 @@ impl Search<'_> {
             let mut row = Vec::with_capacity(width);
             for x in 0..width {
                 let i = y * width + x;
-                let mut best = Best { at: before.at[i], error: before.error[i], x, y };
+                let mut best = Best { at: before.at[i], cost: before.error[i], x, y };
                 if count > 0 && active(i) {
                     let middle = tree.leaf_of(query_means.of(pack(x, y))).min(count - 1);
                     // Walk outwards on both sides for a bounded number of steps. Skip patches that are not allowed.
@@ -147,7 +147,7 @@ impl Search<'_> {
                         }
                     }
                 }
-                row.push((best.at, best.error));
+                row.push((best.at, best.cost));
             }
             row
         })?;

@@ -91,14 +91,14 @@ impl Search<'_> {
         let rows = exec::map(field.height, job, |y| {
             let mut row = Vec::with_capacity(width);
             for i in y * width..(y + 1) * width {
-                let mut best = Best { at: field.at[i], error: field.error[i], x: i % width, y };
+                let mut best = Best { at: field.at[i], cost: field.error[i], x: i % width, y };
                 if active(i) {
                     for &position in self.allowed.members() {
                         let (px, py) = unpack(position);
                         best.try_at(self, px as isize, py as isize);
                     }
                 }
-                row.push((best.at, best.error));
+                row.push((best.at, best.cost));
             }
             row
         })?;
@@ -205,7 +205,7 @@ impl Tile {
             busy = true;
             // Compare distances including usage penalties, but store distances without them.
             let total = self.error[i].saturating_add(search.cost(self.at[i]));
-            let mut best = Best { at: self.at[i], error: total, x, y };
+            let mut best = Best { at: self.at[i], cost: total, x, y };
 
             // Propagation: try the matches of the two neighbours already visited in this direction, shifted by one.
             let d = if backwards { 1 } else { -1 };
@@ -220,10 +220,10 @@ impl Tile {
             if !backwards {
                 best.search_randomly(search, sweep, Rng::new(key, &[index as u64]));
             }
-            if best.error == total && best.at == self.at[i] {
+            if best.cost == total && best.at == self.at[i] {
                 continue;
             }
-            let distance = best.error - search.cost(best.at);
+            let distance = best.cost - search.cost(best.at);
             if let Some(occurrence) = search.occurrence {
                 occurrence.replace(self.at[i], best.at);
             }
@@ -293,11 +293,11 @@ impl Tile {
     }
 }
 
-/// The best match so far of the patch at (`x`, `y`). `error` is its distance plus its usage penalty; `u32::MAX` marks a
+/// The best match so far of the patch at (`x`, `y`). `cost` is its distance plus its usage penalty; `u32::MAX` marks a
 /// hint, or no match.
 pub(super) struct Best {
     pub at: u32,
-    pub error: u32,
+    pub cost: u32,
     pub x: usize,
     pub y: usize,
 }
@@ -307,7 +307,7 @@ impl Best {
     /// best match, within decreasing radii.
     #[inline(always)]
     fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
-        if self.error == u32::MAX {
+        if self.cost == u32::MAX {
             for _ in 0..sweep.initial_samples {
                 let members = search.allowed.members();
                 let (px, py) = unpack(members[rng.below(members.len())]);
@@ -332,16 +332,16 @@ impl Best {
         let (px, py) = (px as usize, py as usize);
         let at = pack(px, py);
         // Skip the current match, because its distance is known, unless it is a hint, whose distance is not.
-        if (at == self.at && self.error != u32::MAX) || !search.allowed.contains(px, py) {
+        if (at == self.at && self.cost != u32::MAX) || !search.allowed.contains(px, py) {
             return;
         }
-        let cost = search.cost(at);
-        if cost >= self.error {
+        let penalty = search.cost(at);
+        if penalty >= self.cost {
             return;
         }
-        let error = search.distance(self.x, self.y, px, py, self.error - cost);
-        if error < self.error - cost {
-            (self.at, self.error) = (at, error + cost);
+        let error = search.distance(self.x, self.y, px, py, self.cost - penalty);
+        if error < self.cost - penalty {
+            (self.at, self.cost) = (at, error + penalty);
         }
     }
 }

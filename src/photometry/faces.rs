@@ -21,7 +21,7 @@ const DIVISIONS: usize = 3;
 
 /// A group of triangles with similar normals, from which a renderer samples points.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Patch {
+pub struct FacePatch {
     pub triangles: Range<usize>,
     /// Whether the patch emits light; other patches only block light.
     pub is_luminous: bool,
@@ -32,7 +32,7 @@ pub struct Patch {
 pub struct Faces {
     pub points: Vec<DVec3>,
     pub triangles: Vec<[u32; 3]>,
-    pub patches: Vec<Patch>,
+    pub patches: Vec<FacePatch>,
 }
 
 /// The half-spaces into which a luminaire emits.
@@ -100,7 +100,7 @@ impl Faces {
 
     /// Ends a patch that began with triangle `first`.
     fn end_patch(&mut self, first: usize, is_luminous: bool) {
-        self.patches.push(Patch { triangles: first..self.triangles.len(), is_luminous });
+        self.patches.push(FacePatch { triangles: first..self.triangles.len(), is_luminous });
     }
 
     /// Adds the rectangle with these half-sides, unless it has no area. Its normal is `half[0]` × `half[1]`.
@@ -324,7 +324,7 @@ mod tests {
             (disc, [false, true], vec![-1.0]),
         ] {
             let faces = Faces::new(&opening, Emits { forwards, backwards }, 1e-3);
-            let of_patch = |p: &Patch| {
+            let of_patch = |p: &FacePatch| {
                 let first = p.triangles.start;
                 let height = faces.points[faces.triangles[first][0] as usize].z;
                 assert!((height.abs() - 1e-3).abs() < 1e-12 && height * faces.area_vector(first).z > 0.0);

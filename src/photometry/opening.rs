@@ -170,8 +170,8 @@ fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec
         // nearest to the observer.
         let (u, v) = (u / across, v / across);
         let width = (a * v).hypot(b * u);
-        let reach = (a * u).hypot(b * v).max(f64::MIN_POSITIVE);
-        let nearest = (first * (a * a * u) + second * (b * b * v)) / (2.0 * reach);
+        let depth = (a * u).hypot(b * v).max(f64::MIN_POSITIVE);
+        let nearest = (first * (a * a * u) + second * (b * b * v)) / (2.0 * depth);
         let tangent = second * u - first * v;
         // Place a rectangle of this width, parallel to the axis, on the near side of the cylinder.
         let centre = (first * u + second * v) * nearest.dot(first * u + second * v);

@@ -27,15 +27,15 @@ const MAX_EXTRAPOLATED: f64 = 2.0;
 const STEP: f64 = 1.01;
 
 impl Curve {
-    /// Returns the curve for independent samples: the squared error is `square` after the minimum time, and inversely
-    /// proportional to the time.
-    pub fn of_independent(min_seconds: f64, max_seconds: f64, square: f64) -> Self {
-        let point = |times: f64| [times * min_seconds, square / times];
+    /// Returns the curve for independent samples: the squared error is `squared_error` after the minimum time, and
+    /// inversely proportional to the time.
+    pub fn of_independent(min_seconds: f64, max_seconds: f64, squared_error: f64) -> Self {
+        let point = |times: f64| [times * min_seconds, squared_error / times];
         Self { min_seconds, max_seconds, points: [point(1.0), point(2.0), point(4.0)] }
     }
 
     /// Returns the squared error after a time in seconds.
-    pub fn square(&self, seconds: f64) -> f64 {
+    pub fn squared_error(&self, seconds: f64) -> f64 {
         let [first, middle, last] = self.points;
         let ([s, a], [t, b]) = if seconds < middle[0] { (first, middle) } else { (middle, last) };
         if a <= 0.0 || b <= 0.0 {
@@ -52,7 +52,7 @@ impl Curve {
     /// at the end of the curve.
     fn gain(&self, seconds: f64) -> f64 {
         let next = (seconds * STEP).min(self.max_seconds);
-        if next > seconds { (self.square(seconds) - self.square(next)) / (next - seconds) } else { 0.0 }
+        if next > seconds { (self.squared_error(seconds) - self.squared_error(next)) / (next - seconds) } else { 0.0 }
     }
 }
 
@@ -64,9 +64,9 @@ pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
     let mut seconds: Vec<f64> = curves.iter().map(|c| c.min_seconds).collect();
     loop {
         let total: f64 = seconds.iter().sum();
-        let square: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.square(s)).sum();
+        let squared_error: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.squared_error(s)).sum();
         let left = match goal {
-            Goal::Error(error) if square <= error * error => return seconds,
+            Goal::Error(error) if squared_error <= error * error => return seconds,
             Goal::Error(_) => f64::INFINITY,
             Goal::Seconds(budget) => budget - total,
         };
@@ -85,25 +85,28 @@ pub(super) fn allocate(curves: &[Curve], goal: Goal) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn monte_carlo(square: f64) -> Curve {
-        Curve::of_independent(0.01, 1e6, square)
+    fn monte_carlo(squared_error: f64) -> Curve {
+        Curve::of_independent(0.01, 1e6, squared_error)
     }
 
     #[test]
     fn curves_pass_through_their_points() {
         let curve = Curve { min_seconds: 1.0, max_seconds: 1e6, points: [[1.0, 64.0], [4.0, 8.0], [16.0, 2.0]] };
-        for ([seconds, square], expected) in curve.points.iter().map(|p| (*p, p[1])) {
-            assert!((curve.square(seconds) - expected).abs() < 1e-9, "{square} after {seconds} s");
+        for ([seconds, squared_error], expected) in curve.points.iter().map(|p| (*p, p[1])) {
+            assert!((curve.squared_error(seconds) - expected).abs() < 1e-9, "{squared_error} after {seconds} s");
         }
-        assert!((curve.square(64.0) - 0.5).abs() < 1e-9 && (curve.square(2.0) - 64.0 / 8f64.sqrt()).abs() < 1e-9);
+        assert!(
+            (curve.squared_error(64.0) - 0.5).abs() < 1e-9
+                && (curve.squared_error(2.0) - 64.0 / 8f64.sqrt()).abs() < 1e-9
+        );
         // Between these points the exponent is 2.66; after the last point it is limited to 2.
         let steep = Curve { points: [[1.0, 320.0], [4.0, 8.0], [16.0, 0.2]], ..curve };
-        assert!((steep.square(1.0) - 320.0).abs() < 1e-9 && (steep.square(16.0) - 0.2).abs() < 1e-9);
-        assert!((steep.square(64.0) - 0.2 / 16.0).abs() < 1e-9);
+        assert!((steep.squared_error(1.0) - 320.0).abs() < 1e-9 && (steep.squared_error(16.0) - 0.2).abs() < 1e-9);
+        assert!((steep.squared_error(64.0) - 0.2 / 16.0).abs() < 1e-9);
         // Noisy measurements must neither let the error rise with time nor let it fall without bound.
         let odd = Curve { points: [[1.0, 1.0], [4.0, 2.0], [16.0, 1e-9]], ..curve };
-        assert!(odd.square(1.0) > odd.square(4.0) && odd.square(64.0) > 1e-12);
-        assert_eq!(Curve { points: [[1.0, 0.0], [4.0, 0.0], [16.0, 0.0]], ..curve }.square(9.0), 0.0);
+        assert!(odd.squared_error(1.0) > odd.squared_error(4.0) && odd.squared_error(64.0) > 1e-12);
+        assert_eq!(Curve { points: [[1.0, 0.0], [4.0, 0.0], [16.0, 0.0]], ..curve }.squared_error(9.0), 0.0);
     }
 
     #[test]
@@ -115,8 +118,8 @@ mod tests {
         assert!((seconds[0] - 2.0).abs() < 0.05, "{seconds:?}");
         // For an error goal the proportions are the same; the squared error is (sqrt a + sqrt b)² / t.
         let seconds = allocate(&curves, Goal::Error(0.2));
-        let square: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.square(s)).sum();
-        assert!(square <= 0.04 && square > 0.039, "{square}");
+        let squared_error: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.squared_error(s)).sum();
+        assert!(squared_error <= 0.04 && squared_error > 0.039, "{squared_error}");
         assert!((seconds[1] / seconds[0] - 3.0).abs() < 0.1, "{seconds:?}");
     }
 

@@ -71,7 +71,7 @@ impl Picture {
     /// where nᵢ is the number of points of net i. A few paths beyond a whole net may therefore even increase the error.
     fn error(&self, paths: u32) -> f64 {
         let (curve, replications) = (self.curve(), f64::from(REPLICATIONS));
-        let square = |points: f64| replications * curve.square(self.seconds(replications * points));
+        let square = |points: f64| replications * curve.squared_error(self.seconds(replications * points));
         nets(paths).map(f64::from).map(|points| points * points * square(points)).sum::<f64>().sqrt() / f64::from(paths)
     }
 
@@ -99,7 +99,7 @@ impl Picture {
             ..params.clone()
         };
         let uniform_paths = seconds / self.seconds(1.0);
-        let wanted = self.curve().square(seconds).sqrt();
+        let wanted = self.curve().squared_error(seconds).sqrt();
         let count = |paths: f64| paths.clamp(MIN_PATHS, MAX_PATHS) as u32;
         let uniform = |paths: u32| {
             let expected = Expected { seconds: self.seconds(paths.into()), error: self.error(paths) };

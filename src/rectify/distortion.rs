@@ -59,12 +59,12 @@ const MODEL_ERROR: f64 = 0.009;
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
 /// lines.
 pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Option<Distortion> {
-    let diagonal = 0.5 * DVec2::new(gradients.width as f64, gradients.height as f64).length();
+    let half_diagonal = 0.5 * DVec2::new(gradients.width as f64, gradients.height as f64).length();
     let edges: Vec<Edge> = segments.iter().filter_map(|s| trace(gradients, s)).collect();
     // Skip lines of several pieces that no single parabola fits: their pieces are curved themselves.
     let lines = edge_lines::lines(&edges).into_iter().filter(|pieces| pieces.len() == 1 || is_parabola(pieces));
     let estimates: Vec<LineEstimate> =
-        lines.flatten().filter_map(|edge| LineEstimate::by(edge, centre, diagonal)).collect();
+        lines.flatten().filter_map(|edge| LineEstimate::by(edge, centre, half_diagonal)).collect();
     combine(&estimates)
 }
 
@@ -86,13 +86,13 @@ impl LineEstimate {
         self.corner * (1.0 - 3.0 * nearly * self.squared_offset)
     }
 
-    fn by(edge: &Edge, centre: DVec2, diagonal: f64) -> Option<Self> {
+    fn by(edge: &Edge, centre: DVec2, half_diagonal: f64) -> Option<Self> {
         let across = (edge.b - edge.a).try_normalize()?.perp();
         let distance = across.dot(0.5 * (edge.a + edge.b) - centre);
         let (bend, variance) = parabola(&along([edge.a, edge.b], &edge.points))?;
-        let leverage = distance / (diagonal * diagonal);
+        let leverage = distance / (half_diagonal * half_diagonal);
         let weight = leverage * leverage / variance;
-        let squared_offset = (distance / diagonal).powi(2);
+        let squared_offset = (distance / half_diagonal).powi(2);
         (weight > 0.0).then_some(Self { corner: bend / leverage, weight, squared_offset })
     }
 }
@@ -237,12 +237,12 @@ mod tests {
     /// horizontally.
     fn photo(k: f64, [width, height]: [usize; 2], seed: u64) -> Image {
         let centre = 0.5 * DVec2::new(width as f64, height as f64);
-        let diagonal = centre.length();
+        let half_diagonal = centre.length();
         Image::from_fn(width, height, |x, y| {
             let mut sum = 0.0;
             for s in 0..9 {
                 let at = DVec2::new(x as f64 + (s % 3) as f64 / 3.0, y as f64 + (s / 3) as f64 / 3.0) + 1.0 / 6.0;
-                let shown = (at - centre) / diagonal;
+                let shown = (at - centre) / half_diagonal;
                 let p = shown * (1.0 - k * shown.length_squared());
                 let depth = 1.0 + 0.4 * p.x + 0.15 * p.y;
                 let wall = DVec2::new(p.x + 0.1 * p.y, p.y) / depth * 9.0;
@@ -294,9 +294,10 @@ mod tests {
         let luma = gradient::encoded_luma(&tiles, monitor.job()).unwrap();
         let gradients = gradient::gradients(&luma, monitor.job()).unwrap();
         let segments = segments::detect(&gradients, monitor.job()).unwrap();
-        let (centre, diagonal) = (DVec2::new(320.0, 240.0), 400.0);
+        let (centre, half_diagonal) = (DVec2::new(320.0, 240.0), 400.0);
         let edges = segments.iter().filter_map(|s| trace(&gradients, s));
-        let pieces: Vec<LineEstimate> = edges.filter_map(|edge| LineEstimate::by(&edge, centre, diagonal)).collect();
+        let pieces: Vec<LineEstimate> =
+            edges.filter_map(|edge| LineEstimate::by(&edge, centre, half_diagonal)).collect();
         assert!(combine(&pieces).is_some_and(|of_pieces| of_pieces.corner.abs() > 0.05), "{:?}", combine(&pieces));
     }
 

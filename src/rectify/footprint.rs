@@ -27,7 +27,7 @@ pub struct Footprints {
     pub shear: [f32; RUN],
     /// The map takes a circle with a diameter of one output pixel to an ellipse in the source. This is the squared
     /// length of its major axis in source pixels, before the ellipse is widened to at least one pixel.
-    pub longest: [f32; RUN],
+    pub squared_major_axis: [f32; RUN],
 }
 
 impl Footprints {
@@ -38,7 +38,7 @@ impl Footprints {
         width: [1.0; RUN],
         height: [1.0; RUN],
         shear: [0.0; RUN],
-        longest: [1.0; RUN],
+        squared_major_axis: [1.0; RUN],
     };
 }
 
@@ -71,25 +71,25 @@ pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usi
         let (xx, xy, yy, determinant) = (a * a + b * b, a * c + b * d, c * c + d * d, a * d - b * c);
         let half = 0.5 * (xx - yy);
         let radius = (half * half + xy * xy).sqrt();
-        let longest = 0.5 * (xx + yy) + radius;
-        let shortest = determinant * determinant / longest.max(f32::MIN_POSITIVE);
+        let squared_major_axis = 0.5 * (xx + yy) + radius;
+        let squared_minor_axis = determinant * determinant / squared_major_axis.max(f32::MIN_POSITIVE);
 
         // Widen both axes to at least 1: scale J Jᵀ and add a multiple of the identity.
-        let (high, low) = (longest.max(1.0), shortest.max(1.0));
-        let scale = if shortest >= 1.0 {
+        let (high, low) = (squared_major_axis.max(1.0), squared_minor_axis.max(1.0));
+        let scale = if squared_minor_axis >= 1.0 {
             1.0
-        } else if longest <= 1.0 {
+        } else if squared_major_axis <= 1.0 {
             0.0
         } else {
             (high - low) / (2.0 * radius)
         };
-        let added = if shortest >= 1.0 { 0.0 } else { low - scale * shortest };
+        let added = if squared_minor_axis >= 1.0 { 0.0 } else { low - scale * squared_minor_axis };
         let yy = scale * yy + added;
         let height = yy.sqrt();
         (shapes[0][i], shapes[1][i]) = ((high * low).sqrt() / height, height);
-        (shapes[2][i], shapes[3][i]) = (scale * xy / yy, longest);
+        (shapes[2][i], shapes[3][i]) = (scale * xy / yy, squared_major_axis);
     }
-    for (shape, to) in shapes.iter().zip([&mut to.width, &mut to.height, &mut to.shear, &mut to.longest]) {
+    for (shape, to) in shapes.iter().zip([&mut to.width, &mut to.height, &mut to.shear, &mut to.squared_major_axis]) {
         to.chunks_exact_mut(SHARED).zip(shape).for_each(|(to, value)| to.fill(*value));
     }
 }

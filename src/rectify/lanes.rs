@@ -200,14 +200,14 @@ mod avx512 {
 
     /// Combines the first pixel with the third and the second with the fourth, then combines the two results.
     macro_rules! fold {
-        ($of:expr, $eight:ident, $four:ident) => {
+        ($of:expr, $of_eight:ident, $of_four:ident) => {
             unsafe {
                 let all = _mm512_castps_si512($of.0);
                 let upper = _mm512_castps512_ps256(_mm512_castsi512_ps(_mm512_alignr_epi32::<6>(all, all)));
-                let half = $eight(_mm512_castps512_ps256($of.0), upper);
+                let half = $of_eight(_mm512_castps512_ps256($of.0), upper);
                 let bits = _mm256_castps_si256(half);
                 let upper = _mm256_castps256_ps128(_mm256_castsi256_ps(_mm256_alignr_epi32::<3>(bits, bits)));
-                Vec4::from($four(_mm256_castps256_ps128(half), upper))
+                Vec4::from($of_four(_mm256_castps256_ps128(half), upper))
             }
         };
     }

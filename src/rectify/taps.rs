@@ -13,8 +13,9 @@ use crate::image::Image;
 pub const MAX_SIDE: f32 = 3.0;
 
 /// The cubic filter fades out as the footprint of a pixel grows: it has full weight up to `SHARP` and no weight from
-/// `SOFT` on. Both are values of [`Footprints::longest`], a squared length in square pixels of the source; up to 1,
-/// nothing is minified. The bench prints the difference from the exact picture under minification. [bench warp]
+/// `SOFT` on. Both are values of [`Footprints::squared_major_axis`], a squared length in square pixels of the source;
+/// up to 1, nothing is minified. The bench prints the difference from the exact picture under minification. [bench
+/// warp]
 const SHARP: f32 = 1.0;
 const SOFT: f32 = 1.5;
 
@@ -153,7 +154,7 @@ pub fn weigh(footprints: &Footprints, part: &Part, source: &Image, taps: &mut Ta
         (x[i], y[i]) = ((at_x - column) as f32, (at_y - line) as f32);
         (left[i], taps.line[i]) = (integer(column) - 1, integer(line) - 1);
         (width[i], height[i]) = ((w * share[0]).min(MAX_SIDE), (h * share[1]).min(MAX_SIDE));
-        sharp[i] = can_be_sharp * ((SOFT - footprints.longest[i]) / (SOFT - SHARP)).max(0.0).min(1.0);
+        sharp[i] = can_be_sharp * ((SOFT - footprints.squared_major_axis[i]) / (SOFT - SHARP)).max(0.0).min(1.0);
     }
     let any = |values: &[f32; RUN]| values.iter().fold(0, |any, v| any | v.to_bits()) != 0;
     let blunt = sharp.map(|s| 1.0 - s);

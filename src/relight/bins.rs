@@ -1,7 +1,7 @@
 //! Sorts light into bins by its source: one bin for the whole emission, one per lamp, or one per cell of the emissive
 //! surface.
 
-use super::lamps::Lamps;
+use super::emission_lamps::EmissionLamps;
 use crate::render::{LightSource, PathSink, World};
 use glam::{DVec3, Vec2, Vec3};
 
@@ -15,7 +15,7 @@ pub(super) enum Division<'a> {
     /// One bin for all of the emission.
     Whole,
     /// One bin per lamp; light that comes from elsewhere counts as background.
-    Lamps(&'a Lamps),
+    Lamps(&'a EmissionLamps),
     /// One bin per cell of a grid over the unit square of texture coordinates. The grid repeats outside the square.
     Cells { width: usize, height: usize },
 }

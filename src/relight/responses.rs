@@ -1,8 +1,8 @@
 //! Computes the responses of several targets to each of many lamps, from one set of paths per target.
 
 use super::bins::{Bins, Division};
+use super::emission_lamps::EmissionLamps;
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
-use super::lamps::Lamps;
 use super::params::{Params, Quantity, TargetGeometry};
 use super::sided::Constraint;
 use super::target::Sampler;
@@ -101,7 +101,7 @@ struct PerGoal {
 pub fn lamp_responses(
     world: &World,
     emitter: usize,
-    lamps: &Lamps,
+    lamps: &EmissionLamps,
     goals: &[Goal],
     params: &Params,
     job: Job,

@@ -152,9 +152,9 @@ fn centre_of_detail(meshes: &[Mesh]) -> Option<DVec3> {
     let triangles = meshes.iter().flat_map(|mesh| (0..mesh.triangles.len()).map(move |triangle| (mesh, triangle)));
     let sampled = triangles.step_by((count / DETAIL_SAMPLES).max(1));
     let corners: Vec<DVec3> = sampled.flat_map(|(mesh, triangle)| mesh.corners(triangle)).map(Vec3::as_dvec3).collect();
-    let (median, reach) = origin::detail(&corners)?;
-    let is_far = reach > 0.0 && median.abs().max_element() > FAR * reach;
-    let grid = 2f64.powi((2.0 * reach).max(f64::MIN_POSITIVE).log2().ceil() as i32);
+    let (median, half_extent) = origin::detail(&corners)?;
+    let is_far = half_extent > 0.0 && median.abs().max_element() > FAR * half_extent;
+    let grid = 2f64.powi((2.0 * half_extent).max(f64::MIN_POSITIVE).log2().ceil() as i32);
     is_far.then(|| (median / grid).round() * grid)
 }
 

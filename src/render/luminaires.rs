@@ -10,7 +10,7 @@ use super::light::bounds::Bounds;
 use super::measured::Measured;
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
-use crate::photometry::faces::{Emits, Faces, Patch};
+use crate::photometry::faces::{Emits, FacePatch, Faces};
 use crate::photometry::opening::Opening;
 use crate::scene::{MAX_LIGHT, Mesh, PunctualLight, Scene, c90};
 use glam::{DVec3, Vec3};
@@ -88,7 +88,7 @@ enum IntensityBound {
 pub struct FaceEmission {
     measured: Measured,
     opening: Opening,
-    least_area: f64,
+    min_area: f64,
     colour: Vec3,
 }
 
@@ -97,7 +97,7 @@ impl FaceEmission {
     /// faces that the viewer sees have the same luminance.
     pub fn radiance(&self, direction: Vec3) -> Vec3 {
         let local = self.measured.local(direction);
-        let area = self.opening.projected_area(local).max(self.least_area);
+        let area = self.opening.projected_area(local).max(self.min_area);
         (self.colour * (self.measured.candela(local) / area) as f32).min(Vec3::splat(MAX_LIGHT))
     }
 
@@ -116,8 +116,8 @@ impl Luminaires {
             let PunctualLight::Luminaire { position, axis, c0, colour, distribution, .. } = *kind else { continue };
             let Some(opening) = kind.opening(&scene.distributions) else { continue };
             let measured = Measured::new(axis, c0, scene.distributions[distribution].clone());
-            let least_area = opening.largest_area() * EDGE_ON;
-            let emission = FaceEmission { measured, opening, least_area, colour };
+            let min_area = opening.largest_area() * EDGE_ON;
+            let emission = FaceEmission { measured, opening, min_area, colour };
             let position = position.as_dvec3() - centre;
             let gap = *known_gap.get_or_insert_with(|| gap(scene, centre));
             shapes.resize(scene.distributions.len(), None);
@@ -186,7 +186,7 @@ impl Source {
         })
     }
 
-    fn bounds(&self, patch: &Patch, intensity_bound: IntensityBound, strength: f32) -> Bounds {
+    fn bounds(&self, patch: &FacePatch, intensity_bound: IntensityBound, strength: f32) -> Bounds {
         let Faces { points, triangles, .. } = &self.shape.faces;
         let area: f64 = patch.triangles.clone().map(|t| self.shape.faces.area_vector(t).length()).sum();
         let of_triangle = |t: usize| {
@@ -218,14 +218,14 @@ impl Shape {
         let faces = Faces::new(opening, emits, gap);
         // Compute the luminance in a grid of directions over the whole sphere.
         let measured = Measured::new(Vec3::Z, Vec3::X, luminaire.clone());
-        let least = opening.largest_area() * EDGE_ON;
+        let min_area = opening.largest_area() * EDGE_ON;
         let directions =
             (0..=180).step_by(STEP[1]).flat_map(|gamma| (0..360).step_by(STEP[0]).map(move |c| [c, gamma]));
         let samples: Vec<(DVec3, f64)> = directions
             .map(|angles| {
                 let [c, gamma] = angles.map(|degrees| f64::from(degrees as u32).to_radians());
                 let local = DVec3::new(gamma.sin() * c.cos(), gamma.sin() * c.sin(), gamma.cos());
-                (local, measured.candela(local) / opening.projected_area(local).max(least))
+                (local, measured.candela(local) / opening.projected_area(local).max(min_area))
             })
             .collect();
         let mut intensity_bounds: Vec<_> = faces
@@ -244,7 +244,7 @@ impl Shape {
 impl IntensityBound {
     /// Bounds the intensity of a patch. `samples` are directions over the whole sphere, with the luminance of the faces
     /// in each. The luminaire emits only at angles γ between the two `limits` in degrees.
-    fn new(faces: &Faces, patch: &Patch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
+    fn new(faces: &Faces, patch: &FacePatch, samples: &[(DVec3, f64)], limits: [f64; 2]) -> Self {
         let normals: Vec<DVec3> = patch.triangles.clone().map(|t| faces.area_vector(t)).collect();
         let area: f64 = normals.iter().map(|n| n.length()).sum();
         let whole: DVec3 = normals.iter().sum();
@@ -275,9 +275,9 @@ impl IntensityBound {
         }
     }
 
-    fn raise(&mut self, least: f64) {
+    fn raise(&mut self, min_peak: f64) {
         match self {
-            Self::Cosine(peak) | Self::Cone { peak, .. } => *peak = peak.max(least),
+            Self::Cosine(peak) | Self::Cone { peak, .. } => *peak = peak.max(min_peak),
         }
     }
 }

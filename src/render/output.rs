@@ -2,7 +2,7 @@
 
 use super::denoise;
 use super::layers::Layer;
-use super::light::Reach;
+use super::light::LampVisibility;
 use crate::error::Result;
 use crate::image::Image;
 
@@ -31,8 +31,8 @@ pub struct Film {
     pub unseen_lights: usize,
     /// How many lamps do not reach the surfaces in view. The render samples such lamps less often. `None` if there are
     /// too few of them to gain time that way, or if the render did not count them.
-    pub reach: Option<Reach>,
-    /// What the render leaves out, in words: [`super::Requirements::left_out`] and [`Reach::sentence`].
+    pub lamp_visibility: Option<LampVisibility>,
+    /// What the render leaves out, in words: [`super::Requirements::left_out`] and [`LampVisibility::sentence`].
     pub requirements: Vec<String>,
     /// The additional images: first the light path expressions, then the surface attributes, in the order of the
     /// request.

@@ -13,7 +13,7 @@ use super::sampler::Sampler;
 use super::vertex::Vertex;
 use super::world::{Pane, World};
 
-use crate::scene::accel::Ray;
+use crate::accel::Ray;
 use glam::{Vec2, Vec3};
 
 /// First bounce at which Russian roulette may end a path. [convention]

@@ -16,7 +16,7 @@ use super::path::{self, Observer, PathLength, PathSegment, PrimaryHit, Strategy}
 use super::sampler::Sampler;
 use super::vertex::{Surface, Vertex};
 use super::world::{Pane, World};
-use crate::scene::accel::Ray;
+use crate::accel::Ray;
 use glam::Vec3;
 
 /// Largest number of paths that share vertices, and number of pixels in a block. [origin not recorded]

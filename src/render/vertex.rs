@@ -5,7 +5,7 @@ use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
 use super::texture_context::TextureContext;
 use super::world::World;
-use crate::scene::accel::{Hit, Ray};
+use crate::accel::{Hit, Ray};
 use glam::{Vec2, Vec3};
 
 pub struct Vertex {

@@ -7,10 +7,10 @@
 //! within the box, and every triangle that the segment hits meets the box. Both structures therefore find the same
 //! hits, to the last bit. The structure of the whole scene answers all other rays.
 
+use crate::accel::{Accel, Hit, Ray};
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
 use crate::job::Monitor;
-use crate::scene::accel::{Accel, Hit, Ray};
 use glam::Vec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -24,7 +24,7 @@ const BEYOND: f64 = 1.0 / 128.0;
 /// 3 scenes]
 const MAX_OUTSIDE: f64 = 1.0 / 16.0;
 /// Triangles count as near if they are within this distance of the box, relative to the largest coordinate of the
-/// scene. It exceeds the rounding error of a hit, `MARGIN` in `scene/accel/node.rs`. [rounding]
+/// scene. It exceeds the rounding error of a hit, `MARGIN` in `accel/node.rs`. [rounding]
 const MARGIN: f32 = 1.0 / (1 << 16) as f32;
 /// The structure is built only if it has at most `1 / MIN_RATIO` of the triangles of the scene, because a larger
 /// structure saves little time. [judged on 3 scenes]
@@ -90,8 +90,7 @@ impl Vicinity {
         let low = Vec3::from_array(sorted.each_ref().map(|values| values[skipped]));
         let high = Vec3::from_array(sorted.each_ref().map(|values| values[values.len() - 1 - skipped]));
         let (lowest, highest) = all.bounds();
-        let largest =
-            [low, high, lowest, highest].into_iter().fold(0.0, |most: f32, p| most.max(p.abs().max_element()));
+        let largest = [low, high, lowest, highest].into_iter().fold(0.0, |max: f32, p| max.max(p.abs().max_element()));
         // Move the sides of the box outwards. In a room, the sides coincide with the walls, and vertices on the walls
         // must count as inside in spite of rounding.
         let margin = largest * MARGIN;

@@ -4,16 +4,16 @@ use super::compiled_material::CompiledMaterial;
 use super::emissive::Emitters;
 use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
-use super::light::{Lights, Reach};
+use super::light::{LampVisibility, Lights};
 use super::luminaires::{Luminaires, Source};
 use super::requirements::{self, Requirements};
 use super::texture_context::TextureContext;
 use super::vicinity::Vicinity;
+use crate::accel::{Accel, Hit, Ray};
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;
 use crate::rng;
-use crate::scene::accel::{Accel, Hit, Ray};
 use crate::scene::{AlphaMode, Environment, Material, Mesh, Scene, TextureRef};
 use glam::{DVec3, Vec2, Vec3};
 use std::ops::Range;
@@ -31,7 +31,7 @@ pub struct World {
     /// recorded where its vertices lie, and if such a structure would save little time.
     vicinity: Option<Arc<Vicinity>>,
     /// Whether renders may build the structure `vicinity`.
-    has_vicinity: bool,
+    may_build_vicinity: bool,
     centre: DVec3,
     /// Id of the first triangle of each mesh, followed by the total number of triangles. If a luminaire has faces, the
     /// meshes of the scene are followed by one mesh per light ([`Luminaires::meshes`]).
@@ -97,7 +97,7 @@ impl World {
             scene,
             accel: Arc::new(accel),
             vicinity: None,
-            has_vicinity: true,
+            may_build_vicinity: true,
             centre,
             first: Arc::new(first),
             faces: Arc::new(faces),
@@ -131,14 +131,14 @@ impl World {
 
     /// Makes renders sample all lights alike, whether or not they reach the surfaces in view. Tests and benchmarks use
     /// this function to measure how much learning helps.
-    pub fn without_learning(&mut self) {
+    pub fn disable_learning(&mut self) {
         self.lights.learns = false;
     }
 
     /// Makes renders trace all rays through the structure of the whole scene, which changes no result. Tests and
     /// benchmarks use this function to measure how much the structure of the surroundings saves.
-    pub fn without_vicinity(&mut self) {
-        self.has_vicinity = false;
+    pub fn disable_vicinity(&mut self) {
+        self.may_build_vicinity = false;
     }
 
     /// Returns a copy that learns, from the paths traced in it, which lights reach the surfaces in view.
@@ -149,19 +149,19 @@ impl World {
     /// Returns a copy for the next pass. The copy seldom samples the lights that, by the light samples so far, do not
     /// reach the surfaces in view. `None` if this copy stays in use (see [`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
-        self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.in_vicinity()).transpose()
+        self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.with_vicinity()).transpose()
     }
 
     /// Ends the learning: returns a copy that keeps what this copy has learned, and learns no more.
     pub(super) fn settled(&self) -> Result<Self> {
         let learned = self.lights.learned()?.unwrap_or_else(|| self.lights.clone());
-        let world = Self { lights: learned, ..self.clone() }.in_vicinity()?;
+        let world = Self { lights: learned, ..self.clone() }.with_vicinity()?;
         Ok(Self { lights: world.lights.clone().settled(), ..world })
     }
 
     /// Builds the structure `vicinity` from the vertices recorded so far, unless the present structure still fits them.
-    fn in_vicinity(self) -> Result<Self> {
-        let Some((positions, counted)) = self.lights.positions()?.filter(|_| self.has_vicinity) else {
+    fn with_vicinity(self) -> Result<Self> {
+        let Some((positions, counted)) = self.lights.positions()?.filter(|_| self.may_build_vicinity) else {
             return Ok(self);
         };
         if let Some(vicinity) = &self.vicinity
@@ -180,9 +180,9 @@ impl World {
         self.vicinity.as_deref()
     }
 
-    /// Counts the lamps that do not reach the surfaces in view (see [`Lights::reach`]).
-    pub(super) fn reach(&self) -> Result<Option<Reach>> {
-        self.lights.reach()
+    /// Counts the lamps that do not reach the surfaces in view (see [`Lights::lamp_visibility`]).
+    pub(super) fn lamp_visibility(&self) -> Result<Option<LampVisibility>> {
+        self.lights.lamp_visibility()
     }
 
     pub fn scene(&self) -> &Arc<Scene> {

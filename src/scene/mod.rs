@@ -4,7 +4,6 @@
 //! of the nodes. Emission is in cd/m² (`factor × texture × strength`, as in glTF). Punctual lights are in candela
 //! (point, spot, luminaire) or in lux (directional).
 
-pub mod accel;
 mod brightness;
 pub mod camera;
 mod fingerprint;

@@ -19,8 +19,8 @@ pub fn detail(points: &[DVec3]) -> Option<(DVec3, f64)> {
     };
     let median =
         DVec3::from_array(std::array::from_fn(|axis| at(&mut points.iter().map(|p| p[axis]).collect::<Vec<_>>(), 0.5)));
-    let reach = at(&mut points.iter().map(|p| (*p - median).abs().max_element()).collect::<Vec<_>>(), NEAR_SHARE);
-    Some((median, reach))
+    let half_extent = at(&mut points.iter().map(|p| (*p - median).abs().max_element()).collect::<Vec<_>>(), NEAR_SHARE);
+    Some((median, half_extent))
 }
 
 #[cfg(test)]
@@ -31,9 +31,9 @@ mod tests {
     fn the_detail_of_a_scene_is_where_most_of_it_is() {
         let building = (0..60).map(|i| DVec3::new(1e6 + f64::from(i), f64::from(i % 3), -2e6));
         let points: Vec<DVec3> = building.chain([DVec3::ZERO, DVec3::splat(3.0)]).collect();
-        let (median, reach) = detail(&points).unwrap();
+        let (median, half_extent) = detail(&points).unwrap();
         assert!((median - DVec3::new(1e6 + 29.0, 1.0, -2e6)).abs().max_element() <= 1.0, "{median}");
-        assert!(reach <= 30.0, "{reach}");
+        assert!(half_extent <= 30.0, "{half_extent}");
         assert_eq!(detail(&[]), None);
     }
 }

@@ -169,7 +169,7 @@ struct Answer {
     probability: [f32; TILE],
     /// How far the features lie outside the ellipsoids of both classes, in `[0, 1]`: 0 inside, `1 - e^(1 - distance)`
     /// outside, where the distance is 1 on an ellipsoid.
-    beyond: [f32; TILE],
+    unseen: [f32; TILE],
     /// Whether all distances are finite, which implies that all features in `channels` are finite.
     all_finite: bool,
 }
@@ -197,28 +197,28 @@ widest! {
         classifier.standardise(pixels, channel_count, tile);
         let planes = &tile.all[..classifier.channels.len()];
 
-        // Find the squared distance from the nearer ellipsoid. If the first ellipsoid contains all pixels, `beyond` is
+        // Find the squared distance from the nearer ellipsoid. If the first ellipsoid contains all pixels, `unseen` is
         // 0 for all of them, and the second ellipsoid need not be evaluated.
         let mut nearest = [f32::INFINITY; TILE];
         let mut all_within = false;
         for turn in 0..classifier.seen.len() {
-            let region = (*likely + turn) % classifier.seen.len();
-            let distance = classifier.seen[region].evaluate(planes);
+            let ellipsoid = (*likely + turn) % classifier.seen.len();
+            let distance = classifier.seen[ellipsoid].evaluate(planes);
             for k in 0..TILE {
                 nearest[k] = nearest[k].min(distance[k]);
             }
             all_within = nearest.iter().fold(true, |within, &v| within & (v <= 1.0));
             if all_within {
-                *likely = region;
+                *likely = ellipsoid;
                 break;
             }
         }
         let all_finite = nearest.iter().fold(true, |finite, &v| finite & (v < f32::INFINITY));
-        let mut beyond = [0.0; TILE];
+        let mut unseen = [0.0; TILE];
         if !all_within {
             for k in 0..TILE {
                 let distance = if nearest[k] > 1.0 { nearest[k].sqrt() } else { 1.0 };
-                beyond[k] = 1.0 - exp_f32(1.0 - distance);
+                unseen[k] = 1.0 - exp_f32(1.0 - distance);
             }
         }
 
@@ -233,11 +233,11 @@ widest! {
         let [like_painted, unlike_painted] = classifier.calibration;
         let (mut mask, mut probability) = ([0.0; TILE], [0.0; TILE]);
         for k in 0..TILE {
-            let calibration = like_painted + (unlike_painted - like_painted) * beyond[k];
+            let calibration = like_painted + (unlike_painted - like_painted) * unseen[k];
             probability[k] = 1.0 / (1.0 + exp_f32(-calibration * logit[k]));
             mask[k] = if probability[k] > 0.5 { 1.0 } else { 0.0 };
         }
-        Answer { mask, probability, beyond, all_finite }
+        Answer { mask, probability, unseen, all_finite }
     }
 }
 
@@ -285,14 +285,14 @@ pub fn run(
             if let Some(region) = region {
                 for (k, &w) in region.row(y)[x..x + n].iter().enumerate() {
                     if w.is_nan() || w <= 0.5 {
-                        (answer.mask[k], answer.probability[k], answer.beyond[k]) = (0.0, 0.0, 0.0);
+                        (answer.mask[k], answer.probability[k], answer.unseen[k]) = (0.0, 0.0, 0.0);
                     }
                 }
             }
-            sum += f64::from(sum_of(&answer.beyond[..n]));
+            sum += f64::from(sum_of(&answer.unseen[..n]));
             mask[x..x + n].copy_from_slice(&answer.mask[..n]);
             confidence[x..x + n].copy_from_slice(&answer.probability[..n]);
-            unseen[x..x + n].copy_from_slice(&answer.beyond[..n]);
+            unseen[x..x + n].copy_from_slice(&answer.unseen[..n]);
         }
         sums[y].store(sum.to_bits(), Ordering::Relaxed);
     })?;

@@ -37,10 +37,10 @@ fn is_gap(confidence: &Image, x: usize, y: usize) -> bool {
         let inside = u >= 0 && v >= 0 && u < confidence.width as isize && v < confidence.height as isize;
         inside && confidence.data[v as usize * confidence.width + u as usize] > 0.5
     };
-    let reach = GAP as isize;
+    let max_steps = GAP as isize;
     ACROSS.iter().any(|&step| {
-        let first = |sign: isize| (1..=reach).find(|&n| is_lit(step, sign * n));
-        first(1).zip(first(-1)).is_some_and(|(ahead, behind)| ahead + behind <= reach + 1)
+        let first = |sign: isize| (1..=max_steps).find(|&n| is_lit(step, sign * n));
+        first(1).zip(first(-1)).is_some_and(|(ahead, behind)| ahead + behind <= max_steps + 1)
     })
 }
 

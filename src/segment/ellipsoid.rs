@@ -11,7 +11,7 @@ use crate::simd::widest;
 const MIN_VARIANCE: f64 = 0.01;
 /// The ellipsoid of a class reaches to this percentile of its samples' distances from the centre, or to one standard
 /// deviation if that is farther.
-const WITHIN: usize = 99;
+const EXTENT_PERCENTILE: usize = 99;
 
 /// Mean and covariance of a class's samples.
 pub struct Spread<'a> {
@@ -26,8 +26,8 @@ pub struct Spread<'a> {
 /// inside.
 pub struct Ellipsoid {
     pub centre: Vec<f64>,
-    /// The matrix `A`, row by row: the inverse covariance divided by the squared reach. The reach is the [`WITHIN`]th
-    /// percentile of the samples' Mahalanobis distances, but at least 1.
+    /// The matrix `A`, row by row: the inverse covariance divided by the squared extent. The extent is the
+    /// [`EXTENT_PERCENTILE`]th percentile of the samples' Mahalanobis distances, but at least 1.
     pub inverse: Vec<f64>,
 }
 
@@ -71,9 +71,9 @@ impl<'a> Spread<'a> {
             distances.extend_from_slice(&ellipsoid.squared_distances(block, columns)[..rows.len()]);
         }
         let mut distances: Vec<f64> = self.members.iter().map(|&i| distances[i]).collect();
-        let reach = (distances.len() - 1) * WITHIN / 100;
-        let reach = distances.select_nth_unstable_by(reach, f64::total_cmp).1.max(1.0);
-        ellipsoid.inverse.iter_mut().for_each(|v| *v /= reach);
+        let rank = (distances.len() - 1) * EXTENT_PERCENTILE / 100;
+        let squared_extent = distances.select_nth_unstable_by(rank, f64::total_cmp).1.max(1.0);
+        ellipsoid.inverse.iter_mut().for_each(|v| *v /= squared_extent);
         ellipsoid
     }
 }
@@ -86,12 +86,12 @@ impl Ellipsoid {
 
 /// Returns the mean over all pixels of how far a pixel lies outside the nearest ellipsoid: 0 inside, `1 - e^(1 - d)`
 /// outside, where the distance d from the centre is 1 on the ellipsoid.
-pub fn mean_beyond(pixels: &Table, columns: &[usize], regions: &[Ellipsoid]) -> f64 {
+pub fn mean_unseen(pixels: &Table, columns: &[usize], ellipsoids: &[Ellipsoid]) -> f64 {
     let mut sum = 0.0;
     for (rows, block) in pixels.blocks() {
         let mut nearest = [f64::INFINITY; BLOCK];
-        for region in regions {
-            let distances = region.squared_distances(block, columns);
+        for ellipsoid in ellipsoids {
+            let distances = ellipsoid.squared_distances(block, columns);
             nearest.iter_mut().zip(distances).for_each(|(n, d)| *n = n.min(d));
         }
         sum += nearest[..rows.len()].iter().map(|n| 1.0 - (1.0 - n.max(1.0).sqrt()).exp()).sum::<f64>();
@@ -172,6 +172,6 @@ mod tests {
         let (x, y) = (region.centre[0], region.centre[1]);
         let (along, across) = (at(x + 18.0, y), at(x, y + 6.0 * 0.51));
         assert!((along / across).ln().abs() < 0.3, "{along} {across}");
-        assert_eq!(mean_beyond(&Table::of(&[x, 0.0, y], 3).unwrap(), &[0, 2], &[region]), 0.0);
+        assert_eq!(mean_unseen(&Table::of(&[x, 0.0, y], 3).unwrap(), &[0, 2], &[region]), 0.0);
     }
 }

@@ -37,7 +37,6 @@
 //! Not modelled: dependence between neighbouring pixels while the classifier is learnt.
 
 mod classify;
-mod distance;
 mod edges;
 mod ellipsoid;
 mod exponential;
@@ -57,7 +56,6 @@ mod table;
 mod tests;
 mod warnings;
 
-pub use distance::dilate;
 pub use edges::smooth_edges;
 pub use input::Input;
 pub use params::{Params, SUBSETS, Subject};

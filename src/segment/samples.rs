@@ -5,7 +5,7 @@ use super::input::Input;
 use super::params::Params;
 use super::strokes::Stroke;
 use crate::error::{Error, Result};
-use crate::image::{make_room, try_collect, try_vec};
+use crate::image::{reserve_capacity, try_collect, try_vec};
 use crate::rng;
 
 /// Where a sample comes from. Cross-validation holds out whole strokes or parts of strokes.
@@ -153,7 +153,7 @@ pub fn ownership(input: &Input) -> Result<Ownership> {
         if stroke.positive {
             positive.push(try_collect(pixels.iter().map(|&(_, p)| p))?);
         } else {
-            make_room(&mut negative, pixels.len())?;
+            reserve_capacity(&mut negative, pixels.len())?;
             negative.extend(pixels.iter().map(|&(_, p)| p));
         }
     }

@@ -63,6 +63,20 @@ impl Segmentation {
         }
     }
 
+    /// Removes from the mask of a plane the pixels that lie off the plane. Exception: if most of a positive stroke lies
+    /// there, it was painted after the test `is_off` had been made, which is then outdated, and nothing is removed.
+    pub fn remove_off_plane<'a>(
+        &mut self,
+        is_off: impl Fn(usize) -> bool,
+        mut strokes: impl Iterator<Item = &'a Stroke>,
+    ) {
+        let share_off =
+            |s: &Stroke| s.pixels.iter().filter(|p| is_off(**p as usize)).count() as f64 / s.pixels.len().max(1) as f64;
+        if !strokes.any(|s| s.positive && share_off(s) > 0.5) {
+            self.remove(is_off);
+        }
+    }
+
     /// Wraps a segmentation that the caller supplies: one channel of probabilities in `[0, 1]`, or a mask of 0 and 1.
     pub fn from_confidence(confidence: &Image) -> Result<Self> {
         check_range("the number of channels of the mask", confidence.channels, 1, 1)?;

@@ -126,7 +126,7 @@ pub fn choose(input: &SelectionInput, job: Job) -> Result<Chosen> {
     let spreads = [negative, positive];
     let unseen = exec::map(subsets.len(), job.part(0.0, 0.1), |k| {
         let columns = &subsets[k];
-        ellipsoid::mean_beyond(&probe, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
+        ellipsoid::mean_unseen(&probe, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
     })?;
 
     let candidate = cheapest(&trial, subsets, &unseen, job.part(0.1, 0.9))?;
@@ -153,7 +153,7 @@ fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> 
     // Candidates are ranked by their loss plus their price, and losses are not negative. Once the price of the next
     // candidate reaches the best sum so far, neither that candidate nor a larger one can win.
     while let Some((terms, ..)) =
-        rest.first().filter(|(t, ..)| best.as_ref().is_none_or(|(least, _)| price(*t) < *least))
+        rest.first().filter(|(t, ..)| best.as_ref().is_none_or(|(min_loss, _)| price(*t) < *min_loss))
     {
         // Evaluate in parallel all candidates that have at most twice as many terms as the smallest remaining one.
         let (batch, larger) = rest.split_at(rest.partition_point(|candidate| candidate.0 <= 2 * terms));
@@ -166,7 +166,7 @@ fn cheapest(trial: &Trial, subsets: &[Vec<usize>], unseen: &[f64], job: Job) -> 
             let (held_out_parts, held_out_strokes) = (candidate.held_out_parts.loss, candidate.held_out_strokes.loss);
             let expected =
                 held_out_parts * (1.0 - unseen[*subset]) + held_out_strokes * unseen[*subset] + price(*terms);
-            if best.as_ref().is_none_or(|(least, _)| expected < *least) {
+            if best.as_ref().is_none_or(|(min_loss, _)| expected < *min_loss) {
                 best = Some((expected, candidate));
             }
         }

@@ -244,16 +244,16 @@ fn brighter(features: &Image, lamps: &[&Stroke], plane: &[&Stroke]) -> Option<(f
     // A plane pixel of equal lightness counts as half a darker pixel.
     let darker = |l: f32| (plane.partition_point(|p| *p < l) + plane.partition_point(|p| *p <= l)) as f64 / 2.0;
     let (mut count, mut sum) = (0, 0.0);
-    let mut least = (f64::INFINITY, 0);
+    let mut dimmest = (f64::INFINITY, 0);
     for stroke in lamps {
         let shares = stroke.pixels.iter().filter_map(lightness).map(|l| darker(l) / plane.len() as f64);
         let (pixels, own) = shares.fold((0, 0.0), |(pixels, own), share| (pixels + 1, own + share));
         (count, sum) = (count + pixels, sum + own);
-        if pixels > 0 && own / f64::from(pixels) < least.0 {
-            least = (own / f64::from(pixels), stroke.pixels[stroke.pixels.len() / 2]);
+        if pixels > 0 && own / f64::from(pixels) < dimmest.0 {
+            dimmest = (own / f64::from(pixels), stroke.pixels[stroke.pixels.len() / 2]);
         }
     }
-    (count > 0).then(|| (sum / f64::from(count), least.1))
+    (count > 0).then(|| (sum / f64::from(count), dimmest.1))
 }
 
 #[cfg(test)]

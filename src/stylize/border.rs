@@ -31,9 +31,9 @@ const MAX_USES: f64 = 100.0;
 /// Maximum number of rounds. In each round, the target patches beyond the maximum number of uses search for other
 /// matches.
 const ROUNDS: usize = 8;
-/// `REACH`: number of diffusion steps, and thus of pixels over which a difference at the border fades out.
+/// `FADE_WIDTH`: number of diffusion steps, and thus of pixels over which a difference at the border fades out.
 /// `DIFFUSION_FACTOR`: factor of each step. [bench stylit:autocomplete]
-const REACH: usize = 12;
+const FADE_WIDTH: usize = 12;
 const DIFFUSION_FACTOR: f32 = 0.97;
 
 /// The border of the painted part at one pyramid level.
@@ -78,16 +78,16 @@ impl<'a> Border<'a> {
 /// target patches with the smallest distances, up to the maximum number of uses.
 pub(super) fn limit_usage(level: &Level, field: &mut Field, job: Job) -> Result<()> {
     let mean = level.wanted.len() as f64 / level.allowed.len() as f64;
-    let most = (MAX_USES * mean.max(1.0)) as usize;
+    let max_uses = (MAX_USES * mean.max(1.0)) as usize;
     let mut free = level.allowed.try_clone()?;
     for round in 0..ROUNDS {
         let mut users = try_collect((0..field.at.len()).filter(|&i| field.at[i] != NONE))?;
         users.sort_unstable_by_key(|&i| (field.at[i], field.error[i], i));
         let mut beyond = try_vec(field.at.len(), false)?;
-        for group in users.chunk_by(|&a, &b| field.at[a] == field.at[b]).filter(|group| group.len() >= most) {
+        for group in users.chunk_by(|&a, &b| field.at[a] == field.at[b]).filter(|group| group.len() >= max_uses) {
             let (x, y) = unpack(field.at[group[0]]);
             free.remove(y * free.width + x);
-            group[most..].iter().for_each(|&i| beyond[i] = true);
+            group[max_uses..].iter().for_each(|&i| beyond[i] = true);
         }
         if !beyond.contains(&true) {
             break;
@@ -118,7 +118,7 @@ pub(super) fn fade(
     let mut step = picture.try_clone()?;
     vote(&mut step, field, &problem.style, problem.patch, mode, job, |i| !mask[i])?;
     step.data.iter_mut().zip(&picture.data).for_each(|(step, paint)| *step = paint - *step);
-    for _ in 0..REACH {
+    for _ in 0..FADE_WIDTH {
         spread(&mut step, mask, job)?;
     }
     let channels = picture.channels;
@@ -163,8 +163,8 @@ mod tests {
             (0..n).for_each(|_| spread(&mut step, &mask, Monitor::default().job()).unwrap());
             (0..40).map(|x| step.pixel(x, 4)[0]).collect::<Vec<f32>>()
         };
-        let reached = spread_times(REACH);
-        assert!(reached[..10].iter().all(|v| *v == 1.0) && reached[10 + REACH..].iter().all(|v| *v == 0.0));
+        let reached = spread_times(FADE_WIDTH);
+        assert!(reached[..10].iter().all(|v| *v == 1.0) && reached[10 + FADE_WIDTH..].iter().all(|v| *v == 0.0));
         let b = 2.0 / DIFFUSION_FACTOR - 1.0;
         let r = b - (b * b - 1.0).sqrt();
         let settled = spread_times(300);

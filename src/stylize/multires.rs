@@ -86,7 +86,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         let mut state = initialise(&mut level, field.take(), &setup, l, job)?;
         reports.push(iterate(&mut level, &mut state, params, l, job)?);
         if l == 0 {
-            return finish(level, state, reports, &setup, job);
+            return output(level, state, reports, &setup, job);
         }
         publish(IntermediateResult { picture: decode(&state.picture, job)?, halvings: l + halved, levels: &reports });
         field = Some(state.field);
@@ -227,7 +227,7 @@ fn rematch(
 }
 
 /// Decodes the picture of the finest level and completes the report.
-fn finish(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
+fn output(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
     let State { field, picture, memory, .. } = state;
     // Only pilot runs at reduced resolution have no memory: no later frame is compared with them.
     let memory = memory.unwrap_or_default();

@@ -6,21 +6,17 @@
 //! hand-drawn mask or known vanishing points can thus replace the result of a stage.
 
 mod check;
-mod clipping;
-mod colour;
-mod distance;
 mod pattern;
 mod schedule;
 mod schedule_file;
 mod stages;
 mod texel_zones;
-mod viewpoint;
 mod warnings;
 
+pub use crate::emission::{CameraDistance, Scale};
+pub use crate::relight::TargetColour;
 pub use check::check_zones;
-pub use colour::TargetColour;
-pub use distance::Distance;
-pub use pattern::{Pattern, Scale};
+pub use pattern::Pattern;
 pub use schedule::Fixture;
 pub use schedule_file::{to_csv, to_json};
 
@@ -177,7 +173,7 @@ pub struct Results {
     pub emission: Option<Arc<Emission>>,
     /// The distance of the photo's camera from the lit plane. It gives the pattern its size on the surface. `None` if
     /// the caller supplies the texture.
-    pub distance: Option<Distance>,
+    pub distance: Option<CameraDistance>,
     /// The scene before relighting. The texture is on the surface, and its values are multiplied by `white_luminance`.
     pub unsolved: Option<Arc<LitScene>>,
     /// Mean colour that the surface should have, relative to the photo's white.

@@ -1,10 +1,8 @@
 //! The stages of the transfer. Each stage takes its input from earlier results, runs, and stores its result.
 
 use super::check::need;
-use super::distance::Distance;
-use super::pattern::Sizing;
-use super::{LitScene, Results, Transfer, colour, texel_zones, viewpoint};
-use crate::emission::Emission;
+use super::{LitScene, Results, Transfer, texel_zones};
+use crate::emission::{CameraDistance, Emission, Sizing, TexelGrid};
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 use crate::render::World;
@@ -13,12 +11,6 @@ use crate::scene::surface::{self, Surface};
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
-
-/// Maximum factor by which a room may be enlarged to contain lamps beyond it. If a larger factor is necessary, the
-/// room stays as it is. `MAX_GROWTH_UNCERTAIN` applies if the room layout is uncertain, because strokes for the plane
-/// are missing, or because the photo's lines do not determine the camera. [bench photos:tune, photos:real]
-const MAX_GROWTH: f64 = 1.25;
-const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 
 /// Maximum number of corrections of the view. The second correction uses the lamps that were found after the first
 /// one. [bench photos:tune]
@@ -66,15 +58,7 @@ impl Transfer {
         let mut plane = segment::run(&input, &self.params.plane, job).map_err(|e| e.context("strokes of the plane"))?;
         if let Some(surfaces) = &features.surfaces {
             let size = [plane.mask.width, plane.mask.height];
-            let is_off = |pixel: usize| surfaces.is_off_plane(pixel, size);
-            // Remove the pixels that lie off the plane according to the surfaces. Exception: if most of a positive
-            // stroke lies there, it was painted after the features had been computed, and the surfaces are outdated.
-            let share_off = |s: &segment::Stroke| {
-                s.pixels.iter().filter(|p| is_off(**p as usize)).count() as f64 / s.pixels.len().max(1) as f64
-            };
-            if !self.input.strokes.plane_strokes().any(|s| s.positive && share_off(s) > 0.5) {
-                plane.remove(is_off);
-            }
+            plane.remove_off_plane(|pixel| surfaces.is_off_plane(pixel, size), self.input.strokes.plane_strokes());
         }
         self.results.plane = Some(Arc::new(plane));
         Ok(())
@@ -138,12 +122,10 @@ impl Transfer {
         let face = layout.face_of(&view.perspective, lit.map(centre));
         let beyond = lights.beyond.clone();
         let pixels = beyond.iter().flat_map(|lamp| &lamp.pixels).map(|&p| centre(p as usize));
-        let (layout, growth) = layout.enlarged(face, &view.perspective, pixels);
         let is_uncertain = plane.is_proposed || self.results.view_by_lines.is_some();
-        let max_growth = if is_uncertain { MAX_GROWTH_UNCERTAIN } else { MAX_GROWTH };
-        if growth > max_growth {
+        let Some(layout) = layout.plausibly_enlarged(face, &view.perspective, pixels, is_uncertain) else {
             return Ok(());
-        }
+        };
         self.results.beyond = beyond;
         self.compute_features(Some(layout), job.part(0.0, 0.5))?;
         self.segment_plane(job.part(0.5, 0.75))?;
@@ -206,7 +188,7 @@ impl Transfer {
     }
 
     /// Synthesises the texture from the unwarped lights, with the number of texels that the surface needs.
-    fn texture_from_photo(&self, surface: &Surface, job: Job) -> Result<(Emission, Distance)> {
+    fn texture_from_photo(&self, surface: &Surface, job: Job) -> Result<(Emission, CameraDistance)> {
         let photo = need(&self.input.photo, "set the photo")?;
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
@@ -226,13 +208,19 @@ impl Transfer {
         let pattern = &self.params.pattern;
         let at = (unwarped.pixel_size, self.params.plane_distance);
         let exemplar = (&input, &self.params.emission);
-        let Sizing { pixel, distance, measured } = pattern.sizing(at, exemplar, surface, job.part(0.1, 0.15))?;
-        let grid = pattern.texel_grid(surface, (width.max(height), pixel), self.params.max_texels)?;
+        let Sizing { pixel, distance, measured } =
+            Sizing::new(pattern.scale, at, exemplar, surface.size.x.into(), job.part(0.1, 0.15))?;
+        let grid = TexelGrid::new(
+            surface.size.as_dvec2(),
+            (width.max(height), pixel),
+            pattern.texel_size,
+            self.params.max_texels,
+        )?;
         let params = emission::Params {
             width: grid.width,
             height: grid.height,
             scale: grid.scale,
-            offset: pattern.offset * grid.density,
+            offset: pattern.offset * grid.texels_per_metre,
             ..self.params.emission.clone()
         };
         let job = job.part(0.15, 1.0);
@@ -248,7 +236,7 @@ impl Transfer {
         let plane = need(&self.results.plane, "run stage Plane")?;
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unsolved = need(&self.results.unsolved, "run stage Emission")?;
-        let target = colour::target(self.params.target, photo, &plane.mask, &lights.mask, job.part(0.0, 0.02))?;
+        let target = relight::photo_colour(self.params.target, photo, &plane.mask, &lights.mask, job.part(0.0, 0.02))?;
 
         let world = World::build(unsolved.scene.clone(), job.part(0.02, 0.1))?;
         let mesh = unsolved.placed.mesh;
@@ -265,7 +253,7 @@ impl Transfer {
         let strength = Vec3::splat(self.params.white_luminance) * solution.scale.as_vec3();
         let mut lit = unsolved.with_strength(strength);
         if lit.scene.cameras.is_empty() {
-            Arc::make_mut(&mut lit.scene).cameras.push(viewpoint::choose(&world, &lit.surface));
+            Arc::make_mut(&mut lit.scene).cameras.push(render::overview_camera(&world, &lit.surface));
         }
         self.results.lit = Some(Arc::new(lit));
         self.results.target = Some(target.colour);
@@ -274,10 +262,10 @@ impl Transfer {
     }
 
     /// The camera from which a lit scene is rendered: the camera of the input, else the scene's first camera, else the
-    /// camera that [`viewpoint::choose`] returns.
+    /// camera that [`render::overview_camera`] returns.
     pub(crate) fn viewpoint(&self, world: &World, lit: &LitScene) -> Camera {
         let own = self.input.camera.as_ref().or(lit.scene.cameras.first());
-        own.cloned().unwrap_or_else(|| viewpoint::choose(world, &lit.surface))
+        own.cloned().unwrap_or_else(|| render::overview_camera(world, &lit.surface))
     }
 
     pub(super) fn render(&mut self, job: Job, publish: &mut dyn FnMut(&Results)) -> Result<()> {

@@ -2,18 +2,10 @@
 
 use crate::emission::TexelZone;
 use crate::error::Result;
-use crate::image::{Image, try_vec};
 use crate::job::Job;
 use crate::scene::Scene;
 use crate::scene::surface::Surface;
-use crate::segment;
-use glam::{DVec2, DVec3, DVec4, UVec2};
-
-/// Width in texels by which triangles are enlarged, so that no texel between two adjacent triangles is lost. [rounding]
-const CRACK: f64 = 1e-3;
-/// A surface counts as a full rectangle if its area is at least this share of its bounding rectangle's area.
-/// [rounding]
-const FULL: f32 = 0.9999;
+use glam::{DVec2, DVec4, UVec2};
 
 /// Finds for each texel whether light is allowed there; returns `None` if light is allowed everywhere. The texture has
 /// `size` texels and covers the bounding rectangle of `surface`, whose axes are those of the rotated pattern. The
@@ -26,84 +18,19 @@ pub(super) fn find(
     size: UVec2,
     job: Job,
 ) -> Result<Option<Vec<TexelZone>>> {
-    let is_full = surface.area >= FULL * surface.size.element_product();
     let keeps_margin = margin >= 0.0;
-    if is_full && !keeps_margin && zones.is_empty() {
+    if surface.is_rectangle() && !keeps_margin && zones.is_empty() {
         return Ok(None);
     }
-    let (width, height) = (size.x as usize, size.y as usize);
-    let density = size.as_dvec2() / surface.size.as_dvec2();
-
-    // Find the texels that the surface covers. If lamps may cross the surface's edge (no margin), include texels of
-    // which only a part is visible.
-    let slack = if keeps_margin { CRACK } else { 1.0 };
-    let covered = coverage(scene, surface, size, slack)?;
-
-    // Mark the texels where no lamp may be: those in zones and, if lamps must keep a margin, those off the surface.
-    // Then dilate the marked texels by the margin.
-    let mut blocked = Image::new(width, height, 1)?;
-    for (i, out) in blocked.data.iter_mut().enumerate() {
-        let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
-        let at = on_other(surface, untouched, texel / density);
-        let in_zone = zones.iter().any(|z| at.x >= z.x && at.x <= z.z && at.y >= z.y && at.y <= z.w);
-        *out = f32::from(in_zone || (keeps_margin && !covered[i]));
-    }
-    let radius = (margin.max(0.0) * density.min_element()).min(65_536.0);
-    let blocked = segment::dilate(&blocked, radius as f32, job)?;
-    let beyond = |x: usize, y: usize| {
-        let edge = (x.min(y).min(width - 1 - x).min(height - 1 - y)) as f64;
-        keeps_margin && edge < radius.max(1.0)
+    // If lamps may cross the surface's edge (no margin), include texels of which only a part is visible.
+    let covered = surface.covered_texels(scene, size, !keeps_margin)?;
+    let texels_per_metre = size.as_dvec2() / surface.size.as_dvec2();
+    let in_zone = |texel: DVec2| {
+        let at = surface.to_other(untouched, texel / texels_per_metre);
+        zones.iter().any(|z| at.x >= z.x && at.x <= z.z && at.y >= z.y && at.y <= z.w)
     };
-
-    let mut texel_zones = try_vec(width * height, TexelZone::Open)?;
-    for (i, out) in texel_zones.iter_mut().enumerate() {
-        *out = match () {
-            _ if blocked.data[i] > 0.5 || beyond(i % width, i / width) => TexelZone::KeepOut,
-            _ if !covered[i] => TexelZone::Hidden,
-            _ => TexelZone::Open,
-        };
-    }
-    Ok(Some(texel_zones))
-}
-
-/// Converts a point on one surface, in metres from its corner, to coordinates of another surface in the same plane.
-fn on_other(from: &Surface, to: &Surface, at: DVec2) -> DVec2 {
-    let point = from.origin.as_dvec3() + from.u_axis.as_dvec3() * at.x + from.v_axis.as_dvec3() * at.y;
-    let offset = point - to.origin.as_dvec3();
-    DVec2::new(offset.dot(to.u_axis.as_dvec3()), offset.dot(to.v_axis.as_dvec3()))
-}
-
-/// For each texel, whether its centre lies in a triangle of the surface, or within `slack` texels of one.
-fn coverage(scene: &Scene, surface: &Surface, size: UVec2, slack: f64) -> Result<Vec<bool>> {
-    let (width, height) = (size.x as usize, size.y as usize);
-    let mut covered = try_vec(width * height, false)?;
-    let density = size.as_dvec2() / surface.size.as_dvec2();
-    for &(mesh, triangle) in &surface.triangles {
-        let mut corners = scene.meshes[mesh].corners(triangle).map(|p| {
-            let from: DVec3 = p.as_dvec3() - surface.origin.as_dvec3();
-            DVec2::new(from.dot(surface.u_axis.as_dvec3()), from.dot(surface.v_axis.as_dvec3())) * density
-        });
-        if (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]) < 0.0 {
-            corners.swap(1, 2);
-        }
-        // Compute the edges; a point inside has positive signed distances from all three.
-        let edges = [0, 1, 2].map(|i| {
-            let along = (corners[(i + 1) % 3] - corners[i]).normalize_or_zero();
-            (corners[i], along)
-        });
-        let (low, high) = corners.iter().fold((corners[0], corners[0]), |(l, h), c| (l.min(*c), h.max(*c)));
-        let first = (low - slack - 0.5).ceil().max(DVec2::ZERO).as_uvec2();
-        let end = (high + slack + 0.5).floor().max(DVec2::ZERO).as_uvec2().min(size);
-        for y in first.y..end.y {
-            for x in first.x..end.x {
-                let texel = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
-                if edges.iter().all(|(from, along)| along.perp_dot(texel - *from) >= -slack) {
-                    covered[y as usize * width + x as usize] = true;
-                }
-            }
-        }
-    }
-    Ok(covered)
+    let margin = keeps_margin.then_some(margin * texels_per_metre.min_element());
+    TexelZone::mark(size, &covered, in_zone, margin, job).map(Some)
 }
 
 #[cfg(test)]

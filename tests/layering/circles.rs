@@ -15,7 +15,7 @@ struct Module {
     exports: BTreeMap<String, Vec<String>>,
 }
 
-/// Modules by path, such as `scene::accel`; the path of the crate itself is "".
+/// Modules by path, such as `image::tiff`; the path of the crate itself is "".
 type Modules = BTreeMap<String, Module>;
 
 /// Returns the sets of modules that use each other. Each source is a path below `src` and the text of the file.

@@ -45,12 +45,12 @@ pub fn distance(of: &Points, from: &Points) -> Option<f64> {
 /// Computes the density of pairs of points at each of `STEPS` distances r, up to a constant factor: r g(r), where g is
 /// the pair correlation function. `spacing` is the mean distance between nearest neighbours.
 fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
-    let (reach, width) = (MAX_DISTANCE * spacing, KERNEL_HALF_WIDTH * spacing);
+    let (max_distance, width) = (MAX_DISTANCE * spacing, KERNEL_HALF_WIDTH * spacing);
     let mut order: Vec<DVec2> = points.at.to_vec();
     order.sort_by(|p, q| p.x.total_cmp(&q.x));
     let mut sums = [0.0; STEPS];
     for (i, p) in order.iter().enumerate() {
-        for q in order[i + 1..].iter().take_while(|q| q.x - p.x < reach + width) {
+        for q in order[i + 1..].iter().take_while(|q| q.x - p.x < max_distance + width) {
             let apart = (*q - *p).abs();
             let shown = (points.size - apart).max(DVec2::ZERO).element_product();
             if shown <= 0.0 {
@@ -58,7 +58,7 @@ fn pairs(points: &Points, spacing: f64) -> [f64; STEPS] {
             }
             for (step, sum) in sums.iter_mut().enumerate() {
                 // Weigh the pair by the Epanechnikov kernel.
-                let r = (step as f64 + 0.5) / STEPS as f64 * reach;
+                let r = (step as f64 + 0.5) / STEPS as f64 * max_distance;
                 let t = (r - apart.length()) / width;
                 *sum += (1.0 - t * t).max(0.0) / shown;
             }

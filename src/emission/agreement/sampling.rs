@@ -32,8 +32,8 @@ pub fn error(
     let side = |pixels: usize| (pixels as f64 / scale).floor() as usize;
     let (width, height) = (side(exemplar.width), side(exemplar.height));
     let is_part = (1..=mask.width).contains(&width) && (1..=mask.height).contains(&height);
-    let room = DVec2::new(mask.width as f64 - width as f64, mask.height as f64 - height as f64);
-    if !is_part || room.max_element() < width.min(height) as f64 / 2.0 {
+    let margin = DVec2::new(mask.width as f64 - width as f64, mask.height as f64 - height as f64);
+    if !is_part || margin.max_element() < width.min(height) as f64 / 2.0 {
         return Ok(None);
     }
     let pixel = |side: usize, at: usize| (((at as f64 + 0.5) * scale) as usize).min(side - 1);
@@ -46,7 +46,7 @@ pub fn error(
     let parts = exec::map(PARTS, job, |k| -> Result<f64> {
         // Spread the parts evenly over the texture by the R2 low-discrepancy sequence (Roberts 2018).
         let step = DVec2::new(0.754_877_666_246_693, 0.569_840_290_998_053);
-        let corner = (room * (step * (k as f64 + 0.5)).fract()).round();
+        let corner = (margin * (step * (k as f64 + 0.5)).fract()).round();
         let at = |i: usize| (corner.y as usize + i / width) * mask.width + corner.x as usize + i % width;
         let components = components::find(width, height, |i| shown[i] && mask.data[at(i)] > 0.5)?;
         let roles = roles::classify(&components, &shown, width, height);

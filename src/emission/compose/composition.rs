@@ -109,7 +109,7 @@ impl Composition {
         self.check(tile)?;
         // To tell crumbs from larger pieces of light, render a margin around the tile as well. The margin is wider than
         // a crumb is long. So a piece that runs from the tile to the outer edge of the margin is no crumb.
-        let margin = if self.has_crumbs() { crumbs::reach(self.crumb) + 2 } else { 0 };
+        let margin = if self.has_crumbs() { crumbs::max_side(self.crumb) + 2 } else { 0 };
         let around = tile.widened(margin, self.width, self.height);
         let (mut texture, mut mask) = self.render(input, styles, around, job)?;
         if self.has_crumbs() {

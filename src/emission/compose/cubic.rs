@@ -31,11 +31,11 @@ pub fn colour(image: &Image, p: DVec2) -> Option<Vec3> {
     };
     let along = |row: [Vec4; 4]| (row[0] * across[0] + row[1] * across[1]) + (row[2] * across[2] + row[3] * across[3]);
     let sum = (along(above) * down[0] + along(upper) * down[1]) + (along(lower) * down[2] + along(below) * down[3]);
-    let least = upper[1].min(upper[2]).min(lower[1].min(lower[2]));
-    let most = upper[1].max(upper[2]).max(lower[1].max(lower[2]));
+    let min_rgb = upper[1].min(upper[2]).min(lower[1].min(lower[2]));
+    let max_rgb = upper[1].max(upper[2]).max(lower[1].max(lower[2]));
     // Only finite sums are limited, so that NaN and infinite values are passed on.
     let sum_rgb = sum.truncate();
-    Some(if sum_rgb.is_finite() { sum.max(least).min(most).truncate() } else { sum_rgb })
+    Some(if sum_rgb.is_finite() { sum.max(min_rgb).min(max_rgb).truncate() } else { sum_rgb })
 }
 
 /// Four neighbouring pixels of an image with three channels. The fourth lane of each holds the red channel of the next

@@ -138,8 +138,9 @@ impl LampGrid {
     }
 
     fn add(&mut self, layer: usize, index: usize, lamp: &Lamp) {
-        let turns = self.size.map_or(vec![DVec2::ZERO], |size| instance::turns().map(|t| t * size).collect());
-        for shift in turns {
+        let offsets =
+            self.size.map_or(vec![DVec2::ZERO], |size| instance::neighbour_offsets().map(|t| t * size).collect());
+        for shift in offsets {
             let cell = self.cell(lamp.centre() + shift);
             self.cells.entry(cell).or_default().push((layer, index, shift));
         }

@@ -316,10 +316,10 @@ impl<'a> PatternPlacement<'a> {
         let working = &exemplar.working;
         let law = if params.tileable { found.fitted(params.size())? } else { found };
         let block = if params.block > 0 { params.block } else { default_block(exemplar, law) };
-        let reach = law
+        let half_period = law
             .lattice()
             .map_or(f64::INFINITY, |[a, b]| (a / working.pitch).length().max((b / working.pitch).length()) / 2.0);
-        let cap = reach.min(block as f64).max(1.0);
+        let cap = half_period.min(block as f64).max(1.0);
         let canvas = (params.size() / working.pitch).ceil();
         let canvas = (canvas.x as usize, canvas.y as usize);
         let centred = if params.centred { centring::shift(exemplar, law, params.size()) } else { None };

@@ -68,7 +68,7 @@ pub fn run(
                 row.add_patches(source, blend, k);
             }
         }
-        row.finish();
+        row.clamp_coverage();
         Ok(())
     })?;
     job.report(1.0);
@@ -134,7 +134,7 @@ impl Row<'_> {
 
     /// Clamps the coverage to agree with the share of lit samples: at least 0.5 if at least half of the samples are
     /// lit, less than 0.5 otherwise.
-    fn finish(&mut self) {
+    fn clamp_coverage(&mut self) {
         for (coverage, &share) in self.coverage.iter_mut().zip(&self.shares) {
             *coverage = if share >= 0.5 { coverage.clamp(0.5, 1.0) } else { coverage.min(BELOW_HALF) };
         }

@@ -5,7 +5,9 @@ use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::{crumbs, luminaires};
 use crate::emission::output::Emission;
 use crate::error::{Error, Result};
+use crate::image::{Image, dilate, try_vec};
 use crate::job::Job;
+use glam::{DVec2, UVec2};
 
 /// Whether light may be shown at a texel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,6 +18,45 @@ pub enum TexelZone {
     Hidden,
     /// No lamp may be here: a lamp that covers the texel is removed as a whole.
     KeepOut,
+}
+
+impl TexelZone {
+    /// Finds the zone of each texel of a texture of `size` texels. `covered` tells for each texel whether the surface
+    /// covers it, and `in_zone` whether a point, in texels, lies in a zone without lamps. `margin` is the minimum
+    /// distance, in texels, of lamps from these zones and from the surface's edge; with `None`, lamps may cross the
+    /// edge.
+    pub fn mark(
+        size: UVec2,
+        covered: &[bool],
+        in_zone: impl Fn(DVec2) -> bool,
+        margin: Option<f64>,
+        job: Job,
+    ) -> Result<Vec<Self>> {
+        // Mark the texels where no lamp may be: those in zones and, if lamps must keep a margin, those off the surface.
+        // Then dilate the marked texels by the margin.
+        let (width, height) = (size.x as usize, size.y as usize);
+        let mut blocked = Image::new(width, height, 1)?;
+        for (i, out) in blocked.data.iter_mut().enumerate() {
+            let texel = DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+            *out = f32::from(in_zone(texel) || (margin.is_some() && !covered[i]));
+        }
+        let radius = margin.unwrap_or(0.0).min(65_536.0);
+        let blocked = dilate(&blocked, radius as f32, job)?;
+        let is_at_edge = |x: usize, y: usize| {
+            let edge = (x.min(y).min(width - 1 - x).min(height - 1 - y)) as f64;
+            margin.is_some() && edge < radius.max(1.0)
+        };
+
+        let mut zones = try_vec(width * height, Self::Open)?;
+        for (i, out) in zones.iter_mut().enumerate() {
+            *out = match () {
+                _ if blocked.data[i] > 0.5 || is_at_edge(i % width, i / width) => Self::KeepOut,
+                _ if !covered[i] => Self::Hidden,
+                _ => Self::Open,
+            };
+        }
+        Ok(zones)
+    }
 }
 
 impl Emission {

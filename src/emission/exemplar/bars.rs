@@ -122,9 +122,9 @@ impl<'a> Lines<'a> {
     }
 
     /// Median depth of the pixels at position `u` across the bars, in the range `along`, weighted by sharpness up to 1
-    /// photo pixel per unwarped pixel. `None` if fewer than `least` pixels have light on both sides. Bars that cross do
-    /// not change the median, because they cover only a few of these pixels.
-    fn median_depth(&self, u: usize, along: Range<usize>, least: usize) -> Option<f32> {
+    /// photo pixel per unwarped pixel. `None` if fewer than `min_known` pixels have light on both sides. Bars that cross
+    /// do not change the median, because they cover only a few of these pixels.
+    fn median_depth(&self, u: usize, along: Range<usize>, min_known: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.section_length()) {
             let end = (start + self.section_length()).min(along.end);
@@ -132,7 +132,7 @@ impl<'a> Lines<'a> {
             let known = (start..end).map(|v| self.depth[self.index(u, v)]).filter(|depth| depth.is_finite());
             depths.extend(known.map(|depth| (f64::from(depth), sharpness)));
         }
-        let depth = if depths.len() < least { None } else { weighted_median(depths) };
+        let depth = if depths.len() < min_known { None } else { weighted_median(depths) };
         depth.map(|depth| depth as f32)
     }
 
@@ -142,8 +142,9 @@ impl<'a> Lines<'a> {
 
     /// Finds the bars that the photo shows.
     pub fn bars(&self) -> Vec<Bar> {
-        let least = (self.along as f64 * MIN_LENGTH) as usize;
-        let profile: Vec<Option<f32>> = (0..self.across).map(|u| self.median_depth(u, 0..self.along, least)).collect();
+        let min_known = (self.along as f64 * MIN_LENGTH) as usize;
+        let profile: Vec<Option<f32>> =
+            (0..self.across).map(|u| self.median_depth(u, 0..self.along, min_known)).collect();
         let mut known: Vec<f32> = profile.iter().flatten().copied().collect();
         known.sort_by(f32::total_cmp);
         let Some(&level) = known.get(known.len() / 2) else { return Vec::new() };
@@ -206,9 +207,9 @@ impl<'a> Lines<'a> {
     }
 
     /// Removes a bar from the light mask. Sections that show no bar stay lit if the photo is sharp enough there, that
-    /// is, if its sharpness is at least `bluntest`. Returns whether any lit pixel was removed.
-    pub fn cut(&self, bar: &Bar, sections: &[Section], bluntest: f64, light: &mut Image) -> bool {
-        let is_absent = |s: &Section| s.sharpness >= bluntest && s.depth < MIN_SECTION_DEPTH * bar.depth;
+    /// is, if its sharpness is at least `lowest_sharpness`. Returns whether any lit pixel was removed.
+    pub fn cut(&self, bar: &Bar, sections: &[Section], lowest_sharpness: f64, light: &mut Image) -> bool {
+        let is_absent = |s: &Section| s.sharpness >= lowest_sharpness && s.depth < MIN_SECTION_DEPTH * bar.depth;
         let absent: Vec<bool> = sections.iter().map(is_absent).collect();
         // Where another bar crosses, this bar seems absent, because the pixels on both sides of it belong to the other
         // bar and are as dark. So a section without a bar is removed as well if the bar shows close by on both sides.
@@ -243,7 +244,7 @@ pub struct Section {
 
 /// The lowest sharpness of those sections in which the bar is clearly visible, that is, in which its depth is at least
 /// half of the whole bar's depth. Infinite if there is no such section.
-pub fn bluntest(bar: &Bar, sections: &[Section]) -> f64 {
+pub fn lowest_sharpness(bar: &Bar, sections: &[Section]) -> f64 {
     let evident = sections.iter().filter(|s| s.depth >= bar.depth / 2.0);
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)
 }

@@ -51,19 +51,19 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
         for piece in kind {
             let expected = lamp.size.element_product() * LocalMap::new(Some(to_photo), piece.centre).area();
             let is_small = piece.weight < MAX_FRAGMENT * expected;
-            let reach = MAX_GAP * lamp.size.max_element();
-            if is_small && (kind.len() < MIN_KIND_COUNT || has_neighbour(components, piece.component, reach)) {
+            let max_distance = MAX_GAP * lamp.size.max_element();
+            if is_small && (kind.len() < MIN_KIND_COUNT || has_neighbour(components, piece.component, max_distance)) {
                 roles[piece.component] = Role::Cut;
             }
         }
     }
 }
 
-/// Whether another component's bounding box lies within `reach` of the bounding box of component `own`.
-fn has_neighbour(components: &Components, own: usize, reach: f64) -> bool {
+/// Whether another component's bounding box lies within `max_distance` of the bounding box of component `own`.
+fn has_neighbour(components: &Components, own: usize, max_distance: f64) -> bool {
     let (low, high) = components.list[own].bounds();
     components.list.iter().enumerate().filter(|(k, _)| *k != own).any(|(_, other)| {
         let (from, to) = other.bounds();
-        (from - high).max(low - to).max(DVec2::ZERO).length() <= reach
+        (from - high).max(low - to).max(DVec2::ZERO).length() <= max_distance
     })
 }

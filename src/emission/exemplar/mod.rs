@@ -192,11 +192,11 @@ fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
     let mut photo_area = photo_areas(&components, photo.map(|p| p.1));
     if photo.is_some() {
         // Drop lights that cover too few photo pixels to be lamps: remnants of other lights' edges, or noise.
-        let least = photo_area.iter().copied().fold(0.0, f64::max).min(MIN_LAMP);
+        let min_area = photo_area.iter().copied().fold(0.0, f64::max).min(MIN_LAMP);
         components = components::find(width, height, |i| {
-            components.labels[i].checked_sub(1).is_some_and(|k| photo_area[k as usize] >= least)
+            components.labels[i].checked_sub(1).is_some_and(|k| photo_area[k as usize] >= min_area)
         })?;
-        photo_area.retain(|&a| a >= least);
+        photo_area.retain(|&a| a >= min_area);
     }
     if components.list.is_empty() {
         return Err(Error::degenerate(

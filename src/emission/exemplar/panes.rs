@@ -54,11 +54,11 @@ pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
 fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     let mut bars = lines.bars();
     let mut is_changed = false;
-    let mut bluntest = f64::INFINITY;
+    let mut lowest_sharpness = f64::INFINITY;
     for bar in &bars {
         let sections = lines.sections(bar);
-        let own = bars::bluntest(bar, &sections);
-        bluntest = bluntest.min(own);
+        let own = bars::lowest_sharpness(bar, &sections);
+        lowest_sharpness = lowest_sharpness.min(own);
         is_changed |= lines.cut(bar, &sections, own, light);
     }
     // Remove the bars that the period predicts, too. A section of a predicted bar stays lit if the photo is sharp
@@ -66,7 +66,7 @@ fn cut_bars(lines: &Lines, light: &mut Image) -> (Vec<Bar>, bool) {
     // bar.
     let beyond = lines.beyond(&bars);
     for bar in &beyond {
-        is_changed |= lines.cut(bar, &lines.sections(bar), bluntest, light);
+        is_changed |= lines.cut(bar, &lines.sections(bar), lowest_sharpness, light);
     }
     bars.extend(beyond);
     bars.sort_by_key(|bar| bar.first);

@@ -4,13 +4,14 @@ use crate::emission::exemplar::components::{Component, Components};
 use crate::image::Image;
 
 /// Maximum width and height, in texels, of a crumb's bounding box: 2 √`crumb`, where `crumb` limits its area.
-pub fn reach(crumb: f64) -> usize {
+pub fn max_side(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }
 
 /// Removes every connected piece of light whose area is below `crumb` texels and whose bounding box is at most
-/// [`reach`] texels wide and high. Keeps a piece for which `is_cut` returns true, because it is the visible part of a
-/// larger light. The arguments of `is_cut` are `[first column, first row]` and `[last column, last row]` of the piece.
+/// [`max_side`] texels wide and high. Keeps a piece for which `is_cut` returns true, because it is the visible part of
+/// a larger light. The arguments of `is_cut` are `[first column, first row]` and `[last column, last row]` of the
+/// piece.
 pub fn remove(
     texture: &mut Image,
     mask: &mut Image,
@@ -18,9 +19,9 @@ pub fn remove(
     crumb: f64,
     is_cut: impl Fn([usize; 2], [usize; 2]) -> bool,
 ) {
-    let reach = reach(crumb);
+    let max_side = max_side(crumb);
     let is_crumb = |piece: &Component| {
-        let is_small = (piece.area as f64) < crumb && piece.size().into_iter().all(|s| s <= reach);
+        let is_small = (piece.area as f64) < crumb && piece.size().into_iter().all(|s| s <= max_side);
         is_small && !is_cut(piece.min, piece.max)
     };
     let crumbs: Vec<bool> = found.list.iter().map(is_crumb).collect();

@@ -197,9 +197,9 @@ impl Member {
     /// both have about the same direction.
     fn is_smeared(&self) -> bool {
         let [[short, x], [long, y]] = principal(self.moments);
-        let [[least, u], [most, v]] = principal(self.inverse_map * self.inverse_map.transpose());
+        let [[minor, u], [major, v]] = principal(self.inverse_map * self.inverse_map.transpose());
         let along = DVec2::new(x, y).dot(DVec2::new(u, v)).abs();
-        long > MIN_SMEAR * short && most > MIN_SMEAR * least && along > MIN_COS_ALONG
+        long > MIN_SMEAR * short && major > MIN_SMEAR * minor && along > MIN_COS_ALONG
     }
 
     /// Standard deviations of the points inside the outline, along and across an axis.

@@ -13,7 +13,7 @@ pub struct Instance {
 
 /// The nine vectors (x, y) with x and y in {-1, 0, 1}: the offsets, in units of the texture's sides, from a tileable
 /// texture to itself and to its eight neighbouring copies.
-pub fn turns() -> impl Iterator<Item = DVec2> {
+pub fn neighbour_offsets() -> impl Iterator<Item = DVec2> {
     (-1..=1).flat_map(|y| (-1..=1).map(move |x| DVec2::new(f64::from(x), f64::from(y))))
 }
 
@@ -21,5 +21,5 @@ pub fn turns() -> impl Iterator<Item = DVec2> {
 /// drawn in the texture alone, a lamp that crosses one side re-enters on the opposite side. `size` is the texture's
 /// size in unwarped pixels.
 pub fn wrapped(instances: &[Instance], size: DVec2) -> Vec<Instance> {
-    instances.iter().flat_map(|i| turns().map(|t| Instance { shift: i.shift + t * size, ..*i })).collect()
+    instances.iter().flat_map(|i| neighbour_offsets().map(|t| Instance { shift: i.shift + t * size, ..*i })).collect()
 }

@@ -51,7 +51,7 @@ impl Measures {
     }
 
     /// The bin of a lamp with these measures. Lamps in one bin are treated as equal.
-    fn step(self) -> [i64; 3] {
+    fn bin(self) -> [i64; 3] {
         [self.area, self.sides.x, self.sides.y].map(|v| (v.max(1e-9).ln() * BINS_PER_E).round() as i64)
     }
 }
@@ -68,25 +68,25 @@ struct Bin<'a> {
 /// comes with a count, the number of lamps in the texture that it stands for. A lamp with count 0, for example one that
 /// the border cuts, gets number 0, which means no kind.
 pub fn number<'a>(lamps: impl Iterator<Item = (&'a mut Luminaire, usize)>) {
-    let mut steps: BTreeMap<[i64; 3], Bin> = BTreeMap::new();
+    let mut bins: BTreeMap<[i64; 3], Bin> = BTreeMap::new();
     for (lamp, count) in lamps {
         lamp.kind = 0;
         let shape = Measures::of(lamp);
         if count > 0 && shape.area > 0.0 {
-            let step = steps.entry(shape.step()).or_insert(Bin { shape, lamps: Vec::new(), count: 0 });
-            step.lamps.push(lamp);
-            step.count += count;
+            let bin = bins.entry(shape.bin()).or_insert(Bin { shape, lamps: Vec::new(), count: 0 });
+            bin.lamps.push(lamp);
+            bin.count += count;
         }
     }
-    let mut left: Vec<Bin> = steps.into_values().collect();
+    let mut left: Vec<Bin> = bins.into_values().collect();
 
     // Take the shape that the largest number of lamps resembles. Together, these lamps form a kind. Repeat this for the
     // remaining lamps.
-    let count = |steps: &[Bin]| steps.iter().map(|s| s.count).sum::<usize>();
+    let count = |bins: &[Bin]| bins.iter().map(|s| s.count).sum::<usize>();
     let mut kinds: Vec<Vec<Bin>> = Vec::new();
     loop {
-        let like = |step: &Bin| left.iter().filter(|s| s.shape.is_like(step.shape)).map(|s| s.count).sum::<usize>();
-        let Some(shape) = left.iter().rev().max_by_key(|step| like(step)).map(|step| step.shape) else { break };
+        let like = |bin: &Bin| left.iter().filter(|s| s.shape.is_like(bin.shape)).map(|s| s.count).sum::<usize>();
+        let Some(shape) = left.iter().rev().max_by_key(|bin| like(bin)).map(|bin| bin.shape) else { break };
         let (of_kind, others): (Vec<_>, Vec<_>) = left.into_iter().partition(|s| s.shape.is_like(shape));
         kinds.push(of_kind);
         left = others;

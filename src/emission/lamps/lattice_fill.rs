@@ -111,8 +111,8 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
     let mut kept: Vec<&Site> = Vec::new();
     for site in order {
         let is_over = |other: &&Site| {
-            let reach = (site.lamps[0].size + other.lamps[0].size) * (OVERLAP / 2.0);
-            sites.residual(site.at - other.at).abs().cmple(reach).all()
+            let max_offset = (site.lamps[0].size + other.lamps[0].size) * (OVERLAP / 2.0);
+            sites.residual(site.at - other.at).abs().cmple(max_offset).all()
         };
         if !kept.iter().any(is_over) {
             kept.push(site);
@@ -128,7 +128,7 @@ fn sharpest(site: &Site, exemplar: &Exemplar, designs: &Designs) -> Vec<usize> {
     let has_design = |l: &MeasuredLamp| designs.of(l.component).is_some();
     let any_design = whole().any(has_design);
     let clear = || whole().filter(|l| !any_design || has_design(l));
-    let most = clear().map(|l| l.weight).fold(0.0, f64::max);
-    let sharp: Vec<usize> = clear().filter(|l| l.weight >= MIN_SHARP_SHARE * most).map(|l| l.component).collect();
+    let max_weight = clear().map(|l| l.weight).fold(0.0, f64::max);
+    let sharp: Vec<usize> = clear().filter(|l| l.weight >= MIN_SHARP_SHARE * max_weight).map(|l| l.component).collect();
     if sharp.is_empty() { vec![site.lamps[0].component] } else { sharp }
 }

@@ -41,8 +41,8 @@ impl RimColours {
     pub fn find(image: &Image, shown: &[bool], components: &Components, level: f32) -> Option<Self> {
         let colour = |i: usize| image.rgb(i % image.width, i / image.width);
         let lit = || components.labels.iter().enumerate().filter(|(_, label)| **label != 0);
-        let most = lit().map(|(i, _)| colour(i).max_element()).fold(0.0, f32::max);
-        if level <= 0.0 || most < level || most > MAX_CLIPPED {
+        let max_value = lit().map(|(i, _)| colour(i).max_element()).fold(0.0, f32::max);
+        if level <= 0.0 || max_value < level || max_value > MAX_CLIPPED {
             return None;
         }
 
@@ -76,9 +76,9 @@ impl RimColours {
                 // Find the factor by which the rim's colour agrees with `value`. Each channel gives a factor; that of a
                 // clipped channel is only a lower bound. Take the largest of all.
                 let strength = value / colour;
-                let least = Vec3::select(clipped, strength, Vec3::ZERO).max_element();
+                let min_factor = Vec3::select(clipped, strength, Vec3::ZERO).max_element();
                 let open = Vec3::select(clipped, Vec3::ZERO, strength).max_element();
-                Vec3::select(clipped, (colour * least.max(open)).max(value), value)
+                Vec3::select(clipped, (colour * min_factor.max(open)).max(value), value)
             }
             _ => value,
         }

@@ -36,8 +36,8 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
             exemplar.roles[*j] == Role::Whole && is_alike
         };
         let like: Vec<usize> = (0..lamps.len()).filter(is_like).collect();
-        let most = like.iter().map(|&j| exemplar.photo_area[j]).fold(0.0, f64::max);
-        like.into_iter().filter(|&j| exemplar.photo_area[j] >= MIN_SHARP_SHARE * most).collect()
+        let max_area = like.iter().map(|&j| exemplar.photo_area[j]).fold(0.0, f64::max);
+        like.into_iter().filter(|&j| exemplar.photo_area[j] >= MIN_SHARP_SHARE * max_area).collect()
     };
     let mut choices: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (n, instance) in instances.iter_mut().enumerate() {
@@ -60,8 +60,8 @@ pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [In
     };
     let sharp: Vec<Vec<usize>> = (0..designs.kinds.len())
         .map(|kind| {
-            let most = clear(kind).map(area).fold(0.0, f64::max);
-            clear(kind).filter(|&k| area(k) >= MIN_SHARP_SHARE * most).collect()
+            let max_area = clear(kind).map(area).fold(0.0, f64::max);
+            clear(kind).filter(|&k| area(k) >= MIN_SHARP_SHARE * max_area).collect()
         })
         .collect();
     for (n, instance) in instances.iter_mut().enumerate() {

@@ -46,14 +46,14 @@ pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instanc
     let frames: Vec<Frame> = (0..exemplar.roles.len()).map(|k| frame(k, exemplar, designs)).collect();
     let whole: Vec<Frame> = (0..frames.len()).filter(|&k| exemplar.roles[k].is_whole()).map(|k| frames[k]).collect();
     let gaps = whole.iter().enumerate().flat_map(|(n, one)| whole[n + 1..].iter().map(|other| one.gap(other)));
-    let least = MIN_GAP_SHARE * gaps.fold(f64::INFINITY, f64::min);
-    if !(least.is_finite() && least > 0.0) {
+    let min_gap = MIN_GAP_SHARE * gaps.fold(f64::INFINITY, f64::min);
+    if !(min_gap.is_finite() && min_gap > 0.0) {
         return instances;
     }
 
     // Find earlier instances by a grid over their centres. A grid cell is as large as the longest lamp plus the minimum
     // gap, so an instance that is too close lies in the same grid cell or in an adjacent one.
-    let cell = frames.iter().map(|f| f.size.max_element()).fold(0.0, f64::max) + least;
+    let cell = frames.iter().map(|f| f.size.max_element()).fold(0.0, f64::max) + min_gap;
     let mut grid: BTreeMap<[i64; 2], Vec<Frame>> = BTreeMap::new();
     let mut kept = Vec::new();
     for instance in instances {
@@ -61,7 +61,7 @@ pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instanc
         let own = Frame { centre: own.centre + instance.shift, ..own };
         let [x, y] = (own.centre / cell).floor().to_array().map(|v| v as i64);
         let mut around = (y - 1..=y + 1).flat_map(|v| (x - 1..=x + 1).map(move |u| [u, v]));
-        let is_close = around.any(|at| grid.get(&at).is_some_and(|there| there.iter().any(|f| f.gap(&own) < least)));
+        let is_close = around.any(|at| grid.get(&at).is_some_and(|there| there.iter().any(|f| f.gap(&own) < min_gap)));
         if !is_close {
             grid.entry([x, y]).or_default().push(own);
             kept.push(instance);

@@ -49,7 +49,7 @@ pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2
     let all: Vec<_> = exemplar.lamps().collect();
     let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();
     let mut basis = basis;
-    for reach in [1.5, 3.5, f64::INFINITY] {
+    for max_step in [1.5, 3.5, f64::INFINITY] {
         let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
         if !inverse.is_finite() {
             break;
@@ -64,7 +64,7 @@ pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2
                 let cell = inverse * difference;
                 let step = DVec2::new(cell.x.round(), if count == 2 { cell.y.round() } else { 0.0 });
                 let off = (difference - basis[0] * step.x - basis[1] * step.y).length();
-                let near = step.x.abs().max(step.y.abs()) <= reach;
+                let near = step.x.abs().max(step.y.abs()) <= max_step;
                 if alike && near && step != DVec2::ZERO && off < MAX_OFF_SITE * basis[0].length() {
                     let weight = p.area.min(q.area) as f64;
                     gram += DMat2::from_cols(step * step.x, step * step.y) * weight;

@@ -28,7 +28,7 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
 
     let size = DVec2::new(width as f64, height as f64);
     let mut dark: Vec<[usize; 4]> = Vec::new();
-    for lamp in one_of_each_place(exemplar, inverse) {
+    for lamp in one_lamp_per_site(exemplar, inverse) {
         let (low, high) = lamp.bounds();
         let (mut whole, mut filled) = (0u32, 0u32);
         let mut cut = Vec::new();
@@ -61,7 +61,7 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
 
 /// Returns one lamp for each site: each position within the lattice cell at which lamps lie. `inverse` maps unwarped
 /// pixels to lattice coordinates.
-fn one_of_each_place(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
+fn one_lamp_per_site(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     let mut first: Vec<&Component> = Vec::new();
     for lamp in exemplar.lamps() {
         let is_there = |other: &&Component| {

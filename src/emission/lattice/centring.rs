@@ -46,10 +46,10 @@ pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     if size.element_product() * inverse.determinant().abs() > MAX_CELLS {
         return Some(shifts[0]);
     }
-    let worth = shifts.map(|shift| border(&motif, [a, b], shift, size));
+    let scores = shifts.map(|shift| border(&motif, [a, b], shift, size));
     let best = (1..4).fold(0, |best, i| {
-        let ((cut, room), (least, most)) = (worth[i], worth[best]);
-        if cut < least || (cut == least && room > most + 1e-6) { i } else { best }
+        let ((cut, margin), (min_cut, max_margin)) = (scores[i], scores[best]);
+        if cut < min_cut || (cut == min_cut && margin > max_margin + 1e-6) { i } else { best }
     });
     Some(shifts[best])
 }
@@ -88,7 +88,7 @@ fn motif(exemplar: &Exemplar, law: Law) -> Vec<Bounds> {
 /// the border, in unwarped pixels. `a` and `b` are the periods of the lattice.
 fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (usize, f64) {
     let inverse = DMat2::from_cols(a, b).inverse();
-    let (mut cut, mut room) = (0, f64::INFINITY);
+    let (mut cut, mut margin) = (0, f64::INFINITY);
     for lamp in motif {
         let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
         // Find the range of lattice coordinates (i, j) for which the lamp, moved by i a + j b, may touch the texture.
@@ -105,9 +105,9 @@ fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (u
                     continue;
                 }
                 let inside = low.min(size - high).min_element();
-                if inside < -1e-6 { cut += 1 } else { room = room.min(inside) }
+                if inside < -1e-6 { cut += 1 } else { margin = margin.min(inside) }
             }
         }
     }
-    (cut, room)
+    (cut, margin)
 }

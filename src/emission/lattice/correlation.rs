@@ -100,9 +100,9 @@ impl Autocorrelation {
         self.index(x, y).map_or(0.0, |i| self.overlap[i])
     }
 
-    /// The correlation at a shift, in [-1, 1]; `None` if fewer than `least` pixels overlap.
-    pub fn at(&self, x: isize, y: isize, least: f32) -> Option<f32> {
-        self.index(x, y).filter(|&i| self.overlap[i] >= least).map(|i| self.value[i])
+    /// The correlation at a shift, in [-1, 1]; `None` if fewer than `min_overlap` pixels overlap.
+    pub fn at(&self, x: isize, y: isize, min_overlap: f32) -> Option<f32> {
+        self.index(x, y).filter(|&i| self.overlap[i] >= min_overlap).map(|i| self.value[i])
     }
 }
 
@@ -110,13 +110,13 @@ impl Autocorrelation {
 /// the sum of squares of the first values; `m2` and `s2` are those of the second values.
 fn coefficient(n: f64, mm: f64, [m1, s1]: [f64; 2], [m2, s2]: [f64; 2]) -> f32 {
     let (var1, var2) = (s1 - m1 * m1 / n, s2 - m2 * m2 / n);
-    let least = 1e-9 * n;
+    let min_variance = 1e-9 * n;
     // The coefficient is undefined if the first or the second values are constant. Then take 1 if both are constant and
     // equal, and 0 otherwise.
-    if var1 > least && var2 > least {
+    if var1 > min_variance && var2 > min_variance {
         ((mm - m1 * m2 / n) / (var1 * var2).sqrt()).clamp(-1.0, 1.0) as f32
     } else {
-        f32::from(var1 <= least && var2 <= least && (m1 - m2).abs() < 1e-3 * n)
+        f32::from(var1 <= min_variance && var2 <= min_variance && (m1 - m2).abs() < 1e-3 * n)
     }
 }
 

@@ -92,12 +92,12 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     if share > 1.0 - 1e-6 && !is_framed {
         return of_rows(exemplar);
     }
-    let least = min_cell(exemplar) / extent;
-    if is_framed && least.max_element() <= 1.0 {
-        return DVec2::splat((share * extent.element_product()).sqrt()).max(least * extent);
+    let min_share = min_cell(exemplar) / extent;
+    if is_framed && min_share.max_element() <= 1.0 {
+        return DVec2::splat((share * extent.element_product()).sqrt()).max(min_share * extent);
     }
-    let x = (share / least.y.max(share.sqrt())).min(1.0).max(least.x);
-    extent * DVec2::new(x, (share / x).min(1.0).max(least.y))
+    let x = (share / min_share.y.max(share.sqrt())).min(1.0).max(min_share.x);
+    extent * DVec2::new(x, (share / x).min(1.0).max(min_share.y))
 }
 
 /// The smallest period, along x and along y, at which the copied lamps of adjacent repetitions stay apart, in unwarped

@@ -23,8 +23,8 @@ pub fn keeps_kinds(exemplar: &Exemplar, shift: DVec2) -> bool {
     for lamp in all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)) {
         let at = lamp.centre + shift;
         let is_hit = |other: &&&Component| {
-            let reach = (size(other) + size(lamp)) / 4.0;
-            (other.centre - at).abs().cmple(reach).all()
+            let max_offset = (size(other) + size(lamp)) / 4.0;
+            (other.centre - at).abs().cmple(max_offset).all()
         };
         if let Some(other) = all.iter().find(is_hit) {
             let (a, b) = (size(lamp), size(other));

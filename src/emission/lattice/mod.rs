@@ -136,7 +136,7 @@ pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
 /// first; at most `max_count` are returned. Each shift meets these conditions:
 ///
 /// - It moves lamps onto lamps of the same kind.
-/// - Its correlation is at least `least`.
+/// - Its correlation is at least `min_value`.
 /// - Its correlation is at least `relative` times the highest
 ///   [`Repeat::lower_bound`](repeats::Repeat::lower_bound) of all shifts.
 ///
@@ -144,7 +144,7 @@ pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
 pub fn shifts(
     exemplar: &Exemplar,
     correlated: &Correlated,
-    least: f32,
+    min_value: f32,
     relative: f32,
     max_count: usize,
 ) -> Vec<(DVec2, f64)> {
@@ -152,12 +152,12 @@ pub fn shifts(
     let overlap = MIN_OVERLAP * valid as f32;
     let unchanging: Vec<DVec2> =
         [DVec2::X, DVec2::Y].into_iter().filter(|&axis| repeats::is_unchanging(correlation, axis, overlap)).collect();
-    let mut found = repeats::peaks(correlation, (width, height), (overlap, least), unchanging.first().copied());
+    let mut found = repeats::peaks(correlation, (width, height), (overlap, min_value), unchanging.first().copied());
     repeats::sharpen(&mut found);
     found.iter_mut().for_each(|r| r.shift *= to_unwarped);
     let lights = exemplar.components.list.len() as f32 / valid as f32;
     let best = found.iter().map(|r| r.lower_bound(lights * r.overlap)).fold(0.0, f32::max);
-    found.retain(|r| r.value >= least.max(relative * best));
+    found.retain(|r| r.value >= min_value.max(relative * best));
     found.sort_by(|a, b| a.shift.length_squared().total_cmp(&b.shift.length_squared()));
     let repeats = found.into_iter().filter(|r| kind_check::keeps_kinds(exemplar, r.shift));
     let repeats = repeats.map(|r| (r.shift, f64::from(r.value)));

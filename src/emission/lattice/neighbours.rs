@@ -40,8 +40,8 @@ pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
 fn distance(lamps: &[MeasuredLamp], lamp: &MeasuredLamp, axis: usize, order: usize) -> Option<f64> {
     let offset = |other: &MeasuredLamp| other.centre - lamp.centre;
     let is_beside = |other: &&MeasuredLamp| {
-        let reach = 0.25 * (lamp.size + other.size);
-        offset(other)[1 - axis].abs() < reach[1 - axis] && offset(other)[axis] > reach[axis]
+        let max_offset = 0.25 * (lamp.size + other.size);
+        offset(other)[1 - axis].abs() < max_offset[1 - axis] && offset(other)[axis] > max_offset[axis]
     };
     let mut all: Vec<f64> = lamps.iter().filter(is_beside).map(|other| offset(other)[axis]).collect();
     all.sort_by(f64::total_cmp);

@@ -35,21 +35,21 @@ impl Repeat {
 }
 
 /// Whether the lights stay nearly the same under every shift along an axis, as long tubes do along their direction.
-/// Tests the shifts of 1, 2, 3, … pixels, as long as at least 2.5 `least` pixels overlap.
-pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, least: f32) -> bool {
+/// Tests the shifts of 1, 2, 3, … pixels, as long as at least 2.5 `min_overlap` pixels overlap.
+pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, min_overlap: f32) -> bool {
     let (dx, dy) = (axis.x as isize, axis.y as isize);
-    let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * least)).collect();
+    let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * min_overlap)).collect();
     !values.is_empty() && values.iter().all(|&v| v >= MIN_UNCHANGING)
 }
 
 /// Finds the local maxima of the correlation at sub-pixel precision. Only one half-plane of shifts is searched, because
-/// opposite shifts have equal correlations. A maximum needs an overlap of `least` pixels and a correlation of
-/// `least_value`. `unchanging` is a direction, x or y, along which the lights do not change. The correlation then has
+/// opposite shifts have equal correlations. A maximum needs an overlap of `min_overlap` pixels and a correlation of
+/// `min_value`. `unchanging` is a direction, x or y, along which the lights do not change. The correlation then has
 /// ridges along this direction instead of peaks, so only shifts perpendicular to it are tested.
 pub fn peaks(
     correlation: &Autocorrelation,
     (width, height): (usize, usize),
-    (least, least_value): (f32, f32),
+    (min_overlap, min_value): (f32, f32),
     unchanging: Option<DVec2>,
 ) -> Vec<Repeat> {
     let (w, h) = (width as isize, height as isize);
@@ -60,7 +60,7 @@ pub fn peaks(
             if (y == 0 && x <= 0) || off_axis {
                 continue;
             }
-            let Some(value) = correlation.at(x, y, least).filter(|&v| v >= least_value) else { continue };
+            let Some(value) = correlation.at(x, y, min_overlap).filter(|&v| v >= min_value) else { continue };
             let at = |dx: isize, dy: isize| match unchanging {
                 Some(u) if u.dot(DVec2::new(dx as f64, dy as f64)) != 0.0 => -1.0,
                 _ => correlation.at(x + dx, y + dy, 1.0).unwrap_or(-1.0),

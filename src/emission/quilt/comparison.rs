@@ -52,7 +52,7 @@ pub struct Scored {
 pub struct Comparison<'a> {
     pub guide: &'a Guide<'a>,
     pub features: Vec<Feature>,
-    pub turns: Vec4,
+    pub channel_periods: Vec4,
     /// `usable`: summed-area table of the exemplar's usable pixels. `light`: summed-area table of the lit share of its
     /// pixels, in units of 1 / [`LIGHT_STEPS`].
     pub usable: AreaSums,
@@ -79,7 +79,7 @@ impl<'a> Comparison<'a> {
         Ok(Self {
             guide,
             features: guide.features(),
-            turns: guide.turns(),
+            channel_periods: guide.channel_periods(),
             usable,
             light: AreaSums::of(|i| (working.coverage[i] * LIGHT_STEPS).round() as u32, working.width, working.height)?,
             lit_share: lit / all.max(1) as f64,
@@ -114,7 +114,7 @@ impl<'a> Comparison<'a> {
         };
         // The number of usable pixels that a shift shows in the whole block, filled pixels included, is an upper bound
         // for the number of empty pixels that it fills.
-        let most_of = |shift: &Shift| {
+        let max_fill = |shift: &Shift| {
             let working = self.guide.working;
             let side = |at: usize, by: i32, length: usize, side: usize| {
                 let start = at as i64 - i64::from(by);
@@ -125,17 +125,17 @@ impl<'a> Comparison<'a> {
             let (v, rows) = side(y, shift.working[1], h, working.height);
             if columns * rows == 0 { 0 } else { self.usable.count(u, v, columns, rows) }
         };
-        let bounds: Vec<usize> = shifts.iter().map(most_of).collect();
-        let mut most = if bounds.contains(&(w * h)) { empty } else { 0 };
+        let bounds: Vec<usize> = shifts.iter().map(max_fill).collect();
+        let mut max_fills = if bounds.contains(&(w * h)) { empty } else { 0 };
         let exact = |(shift, bound): (&Shift, usize)| {
             if bound == w * h {
                 return (empty, true);
             }
-            if (bound as f64) < ENOUGH_COVERAGE * most as f64 {
+            if (bound as f64) < ENOUGH_COVERAGE * max_fills as f64 {
                 return (0, false);
             }
             let fills = usable_of(&block.empty, shift);
-            most = most.max(fills);
+            max_fills = max_fills.max(fills);
             (fills, false)
         };
         shifts.iter().zip(bounds).map(exact).collect()
@@ -143,7 +143,7 @@ impl<'a> Comparison<'a> {
 
     /// Scores how well shifts agree with the known pixels of a block.
     ///
-    /// - Leaves out shifts that fill fewer than `least` empty pixels. If `least` is `None`, the minimum is
+    /// - Leaves out shifts that fill fewer than `min_fill` empty pixels. If `min_fill` is `None`, the minimum is
     ///   [`ENOUGH_COVERAGE`] times the largest number that any shift fills.
     /// - Stops comparing a shift early, and gives it an infinite error, as soon as it cannot be equally good as the
     ///   error `limit`, or as the lowest error found so far.
@@ -151,15 +151,15 @@ impl<'a> Comparison<'a> {
         &self,
         block: &Block,
         shifts: &[Shift],
-        least: Option<usize>,
+        min_fill: Option<usize>,
         limit: f32,
         balance: &Balance,
         job: Job,
     ) -> Result<Vec<Scored>> {
         let fills = self.fills(block, shifts);
-        let most = fills.iter().map(|f| f.0).max().unwrap_or(0);
-        let least = least.unwrap_or((ENOUGH_COVERAGE * most as f64).ceil() as usize).max(1);
-        let mut covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= least).collect();
+        let max_fills = fills.iter().map(|f| f.0).max().unwrap_or(0);
+        let min_fill = min_fill.unwrap_or((ENOUGH_COVERAGE * max_fills as f64).ceil() as usize).max(1);
+        let mut covering: Vec<usize> = (0..shifts.len()).filter(|&n| fills[n].0 >= min_fill).collect();
         let filled = count(&block.filled);
         let mut excess = vec![0.0; shifts.len()];
         let of_covering = self.excess(block, covering.iter().map(|&n| shifts[n]));
@@ -199,14 +199,14 @@ impl<'a> Comparison<'a> {
     /// `filled` is their number of pixels. `is_whole` states that the shift shows usable pixels in the whole block.
     pub fn error(&self, known: &[Run], (shift, is_whole): (&Shift, bool), filled: usize, limit: f32) -> f32 {
         let working = self.guide.working;
-        let most = f64::from(limit) * filled as f64;
+        let max_sum = f64::from(limit) * filled as f64;
         let (mut sum, mut compared) = (0f64, 0usize);
         for run in known {
             let Some((skipped, length, [x, y])) = self.shown(run, shift) else { continue };
             let (old, new) = (run.source + skipped, y * working.width + x);
             let mut add = |from: usize, to: usize| {
                 let (a, b) = (&self.features[old + from..old + to], &self.features[new + from..new + to]);
-                sum += f64::from(squares(a, b, self.turns));
+                sum += f64::from(squares(a, b, self.channel_periods));
                 compared += to - from;
             };
             if is_whole || self.usable.count(x, y, length, 1) == length {
@@ -222,7 +222,7 @@ impl<'a> Comparison<'a> {
             }
             // Stop if the sum so far, divided by `filled`, exceeds `limit`. The final mean would exceed it too: the sum
             // can only grow, and it is divided by at most `filled` pixels.
-            if sum > most {
+            if sum > max_sum {
                 return f32::INFINITY;
             }
         }

@@ -42,18 +42,18 @@ impl Guide<'_> {
     /// The period of each metadata channel (confidence, x and y distance to the nearest light) of a feature. Values
     /// that differ by a period are equivalent: at the distances `cap` and -`cap` alike, no light is near. The
     /// confidence is not periodic, so its period is infinite.
-    pub fn turns(&self) -> Vec4 {
-        let turn = 2.0 * self.scales().1;
-        Vec4::new(f32::INFINITY, turn, turn, f32::INFINITY)
+    pub fn channel_periods(&self) -> Vec4 {
+        let period = 2.0 * self.scales().1;
+        Vec4::new(f32::INFINITY, period, period, f32::INFINITY)
     }
 }
 
-/// Sum of squared differences between the features of two rows of pixels, over pixels and channels. `turns` holds the
-/// periods of the metadata channels ([`Guide::turns`]); a difference d counts as the smaller of |d| and period - |d|.
-pub fn squares(a: &[Feature], b: &[Feature], turns: Vec4) -> f32 {
+/// Sum of squared differences between the features of two rows of pixels, over pixels and channels. With the periods of
+/// the metadata channels ([`Guide::channel_periods`]), a difference d counts as the smaller of |d| and period - |d|.
+pub fn squares(a: &[Feature], b: &[Feature], channel_periods: Vec4) -> f32 {
     let add = |[colour, metadata]: [Vec4; 2], a: &Feature, b: &Feature| {
         let (off, apart) = (a[0] - b[0], (a[1] - b[1]).abs());
-        let apart = apart.min(turns - apart);
+        let apart = apart.min(channel_periods - apart);
         [colour + off * off, metadata + apart * apart]
     };
     // Sum even and odd pixels separately, so that the CPU can execute two independent chains of additions in parallel.

@@ -277,8 +277,8 @@ impl Quilt<'_> {
             let length = |s: &&Scored| (s.shift.exact - self.offset).length();
             return scored.iter().min_by(|a, b| length(a).total_cmp(&length(b))).copied();
         }
-        let least = scored.iter().map(|s| s.error).fold(f32::INFINITY, f32::min);
-        let equal: Vec<_> = scored.iter().filter(|s| s.error <= self.comparison.equally_good(least)).collect();
+        let min_error = scored.iter().map(|s| s.error).fold(f32::INFINITY, f32::min);
+        let equal: Vec<_> = scored.iter().filter(|s| s.error <= self.comparison.equally_good(min_error)).collect();
         if matches!(self.law, Law::Row(_)) {
             let around = self.neighbours(rect);
             if let Some(same) = equal.iter().find(|s| around.contains(&s.shift)) {
@@ -326,7 +326,7 @@ impl Quilt<'_> {
                 squares(
                     &self.comparison.features[old..=old],
                     &self.comparison.features[new..=new],
-                    self.comparison.turns,
+                    self.comparison.channel_periods,
                 ) + lamp
             }
         };

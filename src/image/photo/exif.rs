@@ -43,7 +43,7 @@ pub struct Exif {
     /// Focal length of the lens in millimetres.
     pub focal: Option<f64>,
     /// Pixels per millimetre of the sensor, for a picture of the size `recorded`.
-    pub density: Option<f64>,
+    pub pixels_per_millimetre: Option<f64>,
     /// Width and height in pixels that the camera recorded.
     pub recorded: Option<[f64; 2]>,
     pub f_number: Option<f64>,
@@ -99,7 +99,7 @@ impl Exif {
             orientation,
             focal_35: within(positive(tag::FOCAL_LENGTH_35), 1.0, 1e4),
             focal: within(positive(tag::FOCAL_LENGTH), 0.1, 1e4),
-            density: within(density(&notes), 1.0, 1e5),
+            pixels_per_millimetre: within(pixels_per_millimetre(&notes), 1.0, 1e5),
             recorded: positive(tag::WIDTH).zip(positive(tag::HEIGHT)).map(|(width, height)| [width, height]),
             f_number: within(f_number, 0.5, 256.0),
             exposure_time: within(time, 1e-7, 1e5),
@@ -124,7 +124,7 @@ fn colour(notes: &Directory) -> ExifColour {
 }
 
 /// Pixels per millimetre of the sensor: the geometric mean of the horizontal and the vertical density.
-fn density(notes: &Directory) -> Option<f64> {
+fn pixels_per_millimetre(notes: &Directory) -> Option<f64> {
     let millimetres = match notes.integer(tag::PLANE_UNIT).unwrap_or(2) {
         2 => 25.4,
         3 => 10.0,

@@ -110,7 +110,8 @@ fn focal(exif: &Exif, width: f64, height: f64) -> Option<f64> {
     let diagonal = width.hypot(height);
     let by_film = exif.focal_35.map(|focal| focal * diagonal / FILM_DIAGONAL);
     let scale = exif.recorded.map_or(1.0, |[w, h]| diagonal / w.hypot(h));
-    let by_sensor = exif.focal.zip(exif.density).map(|(focal, density)| focal * density * scale);
+    let by_sensor =
+        exif.focal.zip(exif.pixels_per_millimetre).map(|(focal, per_millimetre)| focal * per_millimetre * scale);
     // The estimate from the sensor is more precise, but wrong in some cameras. Use it unless the 35 mm equivalent
     // contradicts it.
     match (by_film, by_sensor) {

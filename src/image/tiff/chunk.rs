@@ -1,7 +1,7 @@
 //! Decompresses one chunk (strip or tile) of a TIFF's pixels, and undoes its predictor.
 
 use super::ifd::Order;
-use super::layout::{Compression, Depth, Layout, Predictor};
+use super::pixel_tags::{Compression, Depth, PixelTags, Predictor};
 use crate::error::{Error, Result};
 use half::f16;
 use miniz_oxide::inflate::decompress_slice_iter_to_slice;
@@ -74,9 +74,9 @@ fn lzw(stored: &[u8], out: &mut [u8]) -> usize {
 
 /// Undoes the predictor of a row in place, with scratch memory `spare` of the same length. Returns the byte order that
 /// the samples then have.
-pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], layout: &Layout, order: Order) -> Order {
-    let samples = layout.samples;
-    match (layout.predictor, layout.depth.bits() / 8) {
+pub fn undo_predictor(row: &mut [u8], spare: &mut [u8], tags: &PixelTags, order: Order) -> Order {
+    let samples = tags.samples;
+    match (tags.predictor, tags.depth.bits() / 8) {
         (Predictor::None, _) => order,
         // Horizontal: each sample is stored as its difference from the same channel of the pixel to the left.
         (Predictor::Horizontal, 1) => {

@@ -11,7 +11,7 @@
 
 mod chunk;
 pub(super) mod ifd;
-mod layout;
+mod pixel_tags;
 #[cfg(test)]
 mod tests;
 
@@ -22,29 +22,29 @@ use super::{Image, memory, try_vec};
 use crate::error::{Error, Result};
 use chunk::{sample, undo_predictor, unpack};
 use ifd::{Ifds, Order};
-use layout::{Alpha, Chunk, Colour, Depth, Layout};
+use pixel_tags::{Alpha, Chunk, Colour, Depth, PixelTags};
 
-fn layout(bytes: &[u8]) -> Result<(Layout<'_>, Order)> {
+fn pixel_tags(bytes: &[u8]) -> Result<(PixelTags<'_>, Order)> {
     let directory = Ifds::new(bytes).and_then(Ifds::first);
     let directory = directory.ok_or_else(|| Error::format("the TIFF has no directory of its pictures"))?;
-    Ok((Layout::new(directory, bytes.len())?, directory.ifds().order()))
+    Ok((PixelTags::new(directory, bytes.len())?, directory.ifds().order()))
 }
 
 /// Returns width, height and number of channels of the first picture.
 pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
-    let (layout, _) = layout(bytes)?;
-    Ok((layout.width, layout.height, layout.channels()))
+    let (tags, _) = pixel_tags(bytes)?;
+    Ok((tags.width, tags.height, tags.channels()))
 }
 
 /// Bytes of memory for reading the first picture, in addition to the picture itself.
 pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
-    let (layout, _) = layout(bytes)?;
-    Ok(memory::UNPACKING + layout.chunk_bytes() + layout.row_bytes())
+    let (tags, _) = pixel_tags(bytes)?;
+    Ok(memory::UNPACKING + tags.chunk_bytes() + tags.row_bytes())
 }
 
 /// Whether the samples of the first picture are floating-point numbers.
 pub(super) fn is_float(bytes: &[u8]) -> bool {
-    layout(bytes).is_ok_and(|(layout, _)| layout.depth.is_float())
+    pixel_tags(bytes).is_ok_and(|(tags, _)| tags.depth.is_float())
 }
 
 /// Returns the colour profile of the first picture (ICC.1:2022, annex B.3).
@@ -55,36 +55,36 @@ pub(super) fn profile(bytes: &[u8]) -> Option<&[u8]> {
 
 /// Decodes the first picture to linear values.
 pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation) -> Result<Image> {
-    let (layout, order) = layout(bytes)?;
-    let mut image = read(&layout, order, layout.channels(), orientation)?;
-    decode_colours(&mut image, &layout, encoding);
+    let (tags, order) = pixel_tags(bytes)?;
+    let mut image = read(&tags, order, tags.channels(), orientation)?;
+    decode_colours(&mut image, &tags, encoding);
     Ok(image)
 }
 
 /// Whether the samples of the first picture are amounts of inks.
 pub(super) fn has_inks(bytes: &[u8]) -> bool {
-    layout(bytes).is_ok_and(|(layout, _)| matches!(layout.colour, Colour::Cmyk))
+    pixel_tags(bytes).is_ok_and(|(tags, _)| matches!(tags.colour, Colour::Cmyk))
 }
 
 /// Decodes the amounts of the four inks of the first picture. They lie in `[0, 1]`, unless the file is damaged.
 pub(super) fn decode_inks(bytes: &[u8], orientation: Orientation) -> Result<Image> {
-    let (layout, order) = layout(bytes)?;
-    read(&layout, order, layout.colours(), orientation)
+    let (tags, order) = pixel_tags(bytes)?;
+    read(&tags, order, tags.colours(), orientation)
 }
 
 /// Reads and decompresses the samples of the first picture. The result stays encoded (not linear). Inks are converted
 /// to RGB unless `channels` is 4.
-fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation) -> Result<Image> {
+fn read(tags: &PixelTags, order: Order, channels: usize, orientation: Orientation) -> Result<Image> {
     memory::check_unpacking()?;
-    let mut out = Upright::new(layout.width, layout.height, channels, orientation)?;
-    let mut unpacked = try_vec(layout.chunk_bytes(), 0u8)?;
-    let mut spare = try_vec(layout.row_bytes(), 0u8)?;
-    for chunk in layout.chunks() {
-        let rows = &mut unpacked[..layout.row_bytes() * chunk.height];
-        unpack(layout.stored(&chunk)?, layout.compression, rows)?;
-        for (y, row) in rows.chunks_exact_mut(layout.row_bytes()).enumerate() {
-            let order = undo_predictor(row, &mut spare, layout, order);
-            put_row(&mut out, row, order, layout, &Chunk { y: chunk.y + y, ..chunk });
+    let mut out = Upright::new(tags.width, tags.height, channels, orientation)?;
+    let mut unpacked = try_vec(tags.chunk_bytes(), 0u8)?;
+    let mut spare = try_vec(tags.row_bytes(), 0u8)?;
+    for chunk in tags.chunks() {
+        let rows = &mut unpacked[..tags.row_bytes() * chunk.height];
+        unpack(tags.stored(&chunk)?, tags.compression, rows)?;
+        for (y, row) in rows.chunks_exact_mut(tags.row_bytes()).enumerate() {
+            let order = undo_predictor(row, &mut spare, tags, order);
+            put_row(&mut out, row, order, tags, &Chunk { y: chunk.y + y, ..chunk });
         }
     }
     Ok(out.image)
@@ -92,18 +92,18 @@ fn read(layout: &Layout, order: Order, channels: usize, orientation: Orientation
 
 /// Writes the samples of one row of a chunk to their pixels in the image. The samples stay encoded (not linear); alpha
 /// goes to the last channel.
-fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Chunk) {
-    let stored = layout.samples;
-    let value = |i: usize| sample(row, i, layout.depth, order);
-    let (colours, has_alpha) = (layout.colours(), layout.alpha.is_some());
+fn put_row(out: &mut Upright, row: &[u8], order: Order, tags: &PixelTags, at: &Chunk) {
+    let stored = tags.samples;
+    let value = |i: usize| sample(row, i, tags.depth, order);
+    let (colours, has_alpha) = (tags.colours(), tags.alpha.is_some());
     for x in 0..at.width {
         let pixel = out.pixel(at.x + x, at.y);
         let last = pixel.len() - 1;
-        match layout.colour {
+        match tags.colour {
             // This chunk holds one sample of each pixel.
             _ if stored == 1 && at.plane > 0 => pixel[if at.plane == colours { last } else { at.plane }] = value(x),
             Colour::Palette(map) => {
-                let size = 1 << layout.depth.bits();
+                let size = 1 << tags.depth.bits();
                 let index = (value(x) * (size - 1) as f32).round() as usize;
                 for (c, channel) in pixel.iter_mut().enumerate() {
                     *channel = map.integer(c * size + index).unwrap_or(0) as f32 / 65_535.0;
@@ -137,23 +137,23 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, layout: &Layout, at: &Ch
 
 /// Converts the colours to linear values once all samples are in place. Colours that were multiplied by alpha are
 /// first divided by alpha.
-fn decode_colours(image: &mut Image, layout: &Layout, encoding: Encoding) {
-    let is_curved = encoding == Encoding::Srgb && !layout.depth.is_float();
-    let is_associated = layout.alpha == Some(Alpha::Associated);
+fn decode_colours(image: &mut Image, tags: &PixelTags, encoding: Encoding) {
+    let is_curved = encoding == Encoding::Srgb && !tags.depth.is_float();
+    let is_associated = tags.alpha == Some(Alpha::Associated);
     // An 8-bit colour has only 256 values, so decode it by a table.
     let table =
-        (layout.depth == Depth::U8 && !is_associated && !matches!(layout.colour, Colour::Cmyk | Colour::Palette(_)))
+        (tags.depth == Depth::U8 && !is_associated && !matches!(tags.colour, Colour::Cmyk | Colour::Palette(_)))
             .then(srgb8_table);
     let linear = |v: f32| match &table {
         _ if !is_curved => v,
         Some(table) => table[(v * 255.0).round() as usize],
         None => srgb_to_linear(v),
     };
-    let is_grey = matches!(layout.colour, Colour::Grey { .. });
+    let is_grey = matches!(tags.colour, Colour::Grey { .. });
     for pixel in image.data.chunks_exact_mut(image.channels) {
-        let (colours, alpha) = pixel.split_at_mut(if layout.alpha.is_some() { 3 } else { layout.channels() });
+        let (colours, alpha) = pixel.split_at_mut(if tags.alpha.is_some() { 3 } else { tags.channels() });
         if is_associated && alpha[0] > 0.0 {
-            let bound = if layout.depth.is_float() { f32::INFINITY } else { 1.0 };
+            let bound = if tags.depth.is_float() { f32::INFINITY } else { 1.0 };
             colours.iter_mut().for_each(|v| *v = (*v / alpha[0]).min(bound));
         }
         if is_grey {

@@ -47,18 +47,18 @@ pub struct Shape {
     /// For each width in [`BLOOMS`], the covariance of the region's pixel positions after bloom of this width is
     /// removed.
     covariances: [DMat2; BLOOMS.len()],
-    /// Standard deviation of the `size` (`size_error`) and of the `stretch` (`stretch_error`) of the region's
+    /// Standard deviation of the `log_size` (`size_error`) and of the `stretch` (`stretch_error`) of the region's
     /// [`Form`].
     size_error: f64,
     stretch_error: f64,
 }
 
-/// Size and stretch of an ellipse, computed from the standard deviations along its axes. `size` is the logarithm of
+/// Size and stretch of an ellipse, computed from the standard deviations along its axes. `log_size` is the logarithm of
 /// their product. `stretch` is a vector: its length is the logarithm of their ratio, and its angle is twice the angle
 /// of the long axis.
 #[derive(Clone, Copy, Debug)]
 struct Form {
-    size: f64,
+    log_size: f64,
     stretch: DVec2,
 }
 
@@ -100,7 +100,7 @@ impl Shape {
         let column = |axis: DVec3| DVec2::new(right.dot(derivative(axis)), down.dot(derivative(axis)));
         let jacobian = DMat2::from_cols(column(DVec3::X), column(DVec3::Y));
         let ([long, short], angle) = axes(jacobian * self.covariances[bloom] * jacobian.transpose());
-        Some(Form { size: 0.5 * (long * short).ln(), stretch: angle * (0.5 * (long / short).ln()) })
+        Some(Form { log_size: 0.5 * (long * short).ln(), stretch: angle * (0.5 * (long / short).ln()) })
     }
 }
 
@@ -143,15 +143,15 @@ pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
 /// they have equal size and form. Infinite if the camera sees a shape beyond the plane's horizon or at too small an
 /// angle.
 pub fn cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
-    least_cost(shapes, normal, focal, 1)
+    min_cost(shapes, normal, focal, 1)
 }
 
 /// Like [`cost`], but faster: tries only every third width of bloom.
 pub fn rough_cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
-    least_cost(shapes, normal, focal, 3)
+    min_cost(shapes, normal, focal, 3)
 }
 
-fn least_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
+fn min_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
     let cost = |bloom: usize| (BLOOMS[bloom] / BLOOM_SPREAD).powi(2) + cost_without(shapes, normal, focal, bloom);
     (0..BLOOMS.len()).step_by(step).map(cost).fold(f64::INFINITY, f64::min)
 }
@@ -167,9 +167,10 @@ fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f6
         let weighted = forms.iter().map(|(form, shape)| (value(form), shape.size_error.powi(-2)));
         weighted_median(weighted.collect()).unwrap_or(0.0)
     };
-    let size = median(&|form| form.size);
+    let log_size = median(&|form| form.log_size);
     let stretch = DVec2::new(median(&|form| form.stretch.x), median(&|form| form.stretch.y));
-    let by_size: f64 = forms.iter().map(|(form, shape)| robust(((form.size - size) / shape.size_error).powi(2))).sum();
+    let by_size: f64 =
+        forms.iter().map(|(form, shape)| robust(((form.log_size - log_size) / shape.size_error).powi(2))).sum();
     let by_stretch = |common: DVec2| -> f64 {
         let square =
             |form: &Form, shape: &Shape| (form.stretch - common).length_squared() / shape.stretch_error.powi(2);

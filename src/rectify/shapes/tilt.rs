@@ -138,19 +138,19 @@ fn moved(tilt: &Tilt, [right, down, focal]: [f64; 3]) -> Tilt {
 /// Refines a tilt by a pattern search: takes the best step along an axis or a diagonal, and halves the step if no step
 /// decreases the cost. Returns the final cost and tilt.
 fn refine(total: &TotalCost, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
-    let mut least = total.of(&tilt);
+    let mut min_cost = total.of(&tilt);
     let focal_moves: &[f64] = if is_known { &[0.0] } else { &[0.0, 2.0, -2.0] };
     let around = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0], [0.0, 0.0]];
     let mut step = FIRST_STEP;
     while step > LAST_STEP {
         let moves = around.iter().flat_map(|[x, y]| focal_moves.iter().map(move |f| [x * step, y * step, f * step]));
         let tilts = moves.map(|by| moved(&tilt, by)).map(|tilt| (total.of(&tilt), tilt));
-        match tilts.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|next| next.0 < least) {
-            Some(next) => (least, tilt) = next,
+        match tilts.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|next| next.0 < min_cost) {
+            Some(next) => (min_cost, tilt) = next,
             None => step *= 0.5,
         }
     }
-    (least, tilt)
+    (min_cost, tilt)
 }
 
 /// Computes the covariance of the normal, and the standard deviation of the logarithm of the focal length, from the

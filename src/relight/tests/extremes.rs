@@ -90,7 +90,7 @@ fn a_white_closed_room_and_rooms_of_any_size() {
             },
             ..goal
         };
-        let lamps = Lamps::of_meshes(world.scene(), 1).unwrap();
+        let lamps = EmissionLamps::of_meshes(world.scene(), 1).unwrap();
         let params = Params { paths: 1 << 14, target_error: 0.0, ..Params::default() };
         let responses = Pool::new(2)
             .unwrap()
@@ -161,7 +161,7 @@ fn a_lamp_seen_edge_on_is_dark() {
         constraint: EXACTLY,
         weight: 1.0,
     };
-    let lamps = Lamps::of_meshes(world.scene(), 1).unwrap();
+    let lamps = EmissionLamps::of_meshes(world.scene(), 1).unwrap();
     let responses = Pool::new(1)
         .unwrap()
         .run(|| lamp_responses(&world, 1, &lamps, &[goal], &params, Monitor::default().job()).unwrap());

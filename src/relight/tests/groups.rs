@@ -9,12 +9,12 @@ use crate::scene::{Texture, TextureRef};
 const TEXELS: usize = 16;
 
 /// A grey room with emissive texels at `lamps` in the ceiling's texture; each of these texels is a lamp.
-fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, Lamps) {
+fn lamp_room(lamps: &[[usize; 2]], values: &[f32]) -> (World, EmissionLamps) {
     let mut image = Image::new(TEXELS, TEXELS, 1).unwrap();
     for (&[x, y], &value) in lamps.iter().zip(values) {
         image.pixel_mut(x, y)[0] = value;
     }
-    let found = Lamps::of_texture(&image).unwrap();
+    let found = EmissionLamps::of_texture(&image).unwrap();
     let mut scene = room(Vec3::new(4.0, 2.5, 4.0), Vec3::splat(0.5), Vec3::splat(0.7), Vec3::splat(100.0));
     scene.textures.push(Texture::new("lamps", image));
     scene.materials[1].emission_texture = Some(TextureRef::new(0));
@@ -33,7 +33,7 @@ fn desk(x: f32, z: f32) -> TargetGeometry<'static> {
     TargetGeometry::Grid { origin, across: Vec3::X, down: Vec3::Z, normal: Vec3::Y }
 }
 
-fn respond(world: &World, lamps: &Lamps, goals: &[Goal]) -> Responses {
+fn respond(world: &World, lamps: &EmissionLamps, goals: &[Goal]) -> Responses {
     let params = Params { paths: 1 << 15, target_error: 0.0, ..Params::default() };
     let monitor = Monitor::default();
     Pool::new(2).unwrap().run(|| lamp_responses(world, 1, lamps, goals, &params, monitor.job()).unwrap())
@@ -321,7 +321,7 @@ fn luminaires_are_lamps() {
             goal(place, Vec3::splat(lux / std::f32::consts::PI))
         })
         .collect();
-    let lamps = Lamps::of_lights(&scene).unwrap();
+    let lamps = EmissionLamps::of_lights(&scene).unwrap();
     let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
     let responses = respond(&world, &lamps, &aims);
     let mut truth = [[0.0; 2]; 2];

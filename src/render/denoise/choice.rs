@@ -46,9 +46,9 @@ pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> 
     let errors = classes.smoothed(&errors, ERROR_RADIUS, job.part(0.2, 0.6))?;
     let choices = Planes::from_rows([width, height, passes.len() + 1], job.part(0.6, 0.7), |y, row| {
         for x in 0..width {
-            let least = (0..=passes.len()).min_by(|&i, &j| errors.row(y, i)[x].total_cmp(&errors.row(y, j)[x]));
+            let best = (0..=passes.len()).min_by(|&i, &j| errors.row(y, i)[x].total_cmp(&errors.row(y, j)[x]));
             // Where the variance is unknown, take the last pass.
-            let choice = if light.is_known(x, y) { least.unwrap_or(0) } else { passes.len() };
+            let choice = if light.is_known(x, y) { best.unwrap_or(0) } else { passes.len() };
             row[choice * width + x] = 1.0;
         }
     })?;

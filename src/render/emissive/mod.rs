@@ -13,7 +13,7 @@
 //! depends on the direction.
 
 mod emitter;
-mod patches;
+mod face_patches;
 mod polygon;
 mod tiles;
 
@@ -24,10 +24,10 @@ use super::facet::Facet;
 use super::light::bounds::Bounds;
 use super::luminaires::Source;
 use crate::error::Result;
-use crate::image::{make_room, try_collect, try_vec, try_with_capacity};
+use crate::image::{reserve_capacity, try_collect, try_vec, try_with_capacity};
 use crate::scene::Scene;
+use face_patches::FacePatches;
 use glam::{Vec2, Vec3};
-use patches::Patches;
 use polygon::uniform_in_triangle;
 use rayon::prelude::*;
 use tiles::{Tile, Tiling};
@@ -46,7 +46,7 @@ pub struct Emitters {
     uniform: Vec<UniformTriangle>,
     tiles: Vec<Tile>,
     /// The patches of luminaires' faces. Their piece indices follow the indices of the tiles.
-    patches: Patches,
+    patches: FacePatches,
     /// Flux of all emitters in lumens; for a double-sided emitter, only one side counts.
     pub power: f64,
 }
@@ -89,7 +89,7 @@ impl Emitters {
             piece_of_tile: Vec::new(),
             uniform: Vec::new(),
             tiles: Vec::new(),
-            patches: Patches::default(),
+            patches: FacePatches::default(),
             power: 0.0,
         };
         let mut bounds = Vec::new();
@@ -160,7 +160,7 @@ impl Emitters {
             }
         }
         self.tiles = tiles;
-        make_room(bounds, light.len())?;
+        reserve_capacity(bounds, light.len())?;
         bounds.append(&mut light);
         Ok(())
     }
@@ -179,8 +179,8 @@ impl Emitters {
             let mesh = meshes + source.light;
             for (triangles, bound) in source.patches(mean_channel(source.emission.colour())) {
                 let (patch, start) = (self.patches.count(), self.emitters.len());
-                make_room(&mut self.emitters, triangles.len())?;
-                make_room(&mut self.divisions, triangles.len())?;
+                reserve_capacity(&mut self.emitters, triangles.len())?;
+                reserve_capacity(&mut self.divisions, triangles.len())?;
                 for triangle in triangles {
                     let id = first[mesh] + triangle as u32;
                     let numbers = [mesh as u32, triangle as u32, id];

@@ -170,7 +170,7 @@ impl<'p> AdaptiveSampler<'p> {
         if whole.error() <= target {
             return Ok(());
         }
-        let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance / f64::from(t.pixels)).collect();
+        let path_variances: Vec<f64> = statistics.iter().map(|t| t.path_variance_sum / f64::from(t.pixels)).collect();
         let deviations: Vec<f64> =
             accumulator.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
         // Give each tile n = k d paths per pixel. Here d is the standard deviation of the tile's paths, raised where

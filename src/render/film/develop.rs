@@ -16,10 +16,10 @@ impl Accumulator<'_> {
         let paths = self.image(1, job, |x, y, out| out[0] = self.pixel(x, y).count() as f32)?;
         let layers = self.layers.as_ref().map_or(Ok(Vec::new()), |l| l.images(&beauty, &self.places(job)?, job))?;
         let total = self.total(job)?;
-        let reach = self.learning.reach()?;
+        let lamp_visibility = self.learning.lamp_visibility()?;
         let mut requirements = self.world.requirements().left_out();
         requirements.extend(self.world.scene().unrendered.iter().map(|unrendered| format!("{unrendered}.")));
-        requirements.extend(reach.filter(|reach| reach.hidden > 0).map(|reach| reach.sentence()));
+        requirements.extend(lamp_visibility.filter(|seen| seen.hidden > 0).map(|seen| seen.sentence()));
         Ok(Film {
             beauty,
             layers,
@@ -30,7 +30,7 @@ impl Accumulator<'_> {
             relative_error: self.relative_total(job)?.error(),
             discarded: self.discarded.load(Ordering::Relaxed),
             unseen_lights: self.world.scene().unseen_lights(),
-            reach,
+            lamp_visibility,
             requirements,
             preview: None,
         })

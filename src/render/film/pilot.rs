@@ -123,7 +123,7 @@ pub fn run(
     let learning = world.learning()?;
     let prepass = Prepass::new(&learning, &camera_rays, params, job.part(0.0, 0.05))?;
     let world = &learning.settled()?;
-    let prepass = prepass.in_world(world);
+    let prepass = prepass.with_world(world);
     let expected = tile_moments(&prepass, grid, job.part(0.05, 0.1))?;
     let mut rng = Rng::new(params.seed, &[]);
     let mut chosen = choose(&expected, grid, &mut rng)?;

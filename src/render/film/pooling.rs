@@ -16,10 +16,10 @@ const WEIGHTS: [f32; 4] = [20.0, 15.0, 6.0, 1.0];
 /// with few paths.
 pub fn pooled_by_paths(variance: &Image, paths: &Image, job: Job) -> Result<Image> {
     let (width, channels) = (variance.width, variance.channels);
-    let most = paths.data.iter().fold(1f32, |most, &n| most.max(n));
+    let max_paths = paths.data.iter().fold(1f32, |max_paths, &n| max_paths.max(n));
     // Divide the numbers of paths by the largest one. The quotients are exactly 1 if all pixels have equal numbers of
     // paths, and their products with variances cannot overflow.
-    let share = |x: usize, y: usize| paths.pixel(x, y)[0].max(1.0) / most;
+    let share = |x: usize, y: usize| paths.pixel(x, y)[0].max(1.0) / max_paths;
     let mut single = Image::new(width, variance.height, channels)?;
     exec::for_rows(&mut single.data, width * channels, job, |y, row| {
         for (x, out) in row.chunks_exact_mut(channels).enumerate() {

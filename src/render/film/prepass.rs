@@ -50,7 +50,7 @@ impl<'a> Prepass<'a> {
 
     /// Returns the prepass with `world` in place of its own world. `world` is a copy that has learned, from the paths
     /// of [`Prepass::new`], which lights reach the surfaces in view.
-    pub fn in_world(self, world: &'a World) -> Self {
+    pub fn with_world(self, world: &'a World) -> Self {
         Self { world, ..self }
     }
 

@@ -26,12 +26,12 @@ pub struct Statistics {
     /// Largest number of paths in a pixel.
     pub max_paths: u32,
     /// Sum, over the pixels, of the pixel's mean radiance, averaged over the channels.
-    mean: f64,
+    mean_sum: f64,
     /// Sum, over the pixels, of w² × the variance of the pixel's mean radiance. The factor w on the pixel's error is
     /// the result of the function `weight` that [`Accumulator::statistics`] takes.
-    variance: f64,
+    variance_sum: f64,
     /// Sum, over the pixels, of w² × the variance of the radiance of a single path.
-    pub path_variance: f64,
+    pub path_variance_sum: f64,
 }
 
 impl Statistics {
@@ -39,19 +39,19 @@ impl Statistics {
         self.paths += other.paths;
         self.pixels += other.pixels;
         self.max_paths = self.max_paths.max(other.max_paths);
-        self.mean += other.mean;
-        self.variance += other.variance;
-        self.path_variance += other.path_variance;
+        self.mean_sum += other.mean_sum;
+        self.variance_sum += other.variance_sum;
+        self.path_variance_sum += other.path_variance_sum;
     }
 
     /// Returns the mean radiance of the pixels, averaged over the channels.
     pub fn mean_radiance(&self) -> f64 {
-        self.mean / f64::from(self.pixels.max(1))
+        self.mean_sum / f64::from(self.pixels.max(1))
     }
 
     /// Returns the root mean square of the pixels' standard errors, divided by the mean radiance of the pixels.
     pub fn error(&self) -> f64 {
-        let variance = self.variance / f64::from(self.pixels.max(1));
+        let variance = self.variance_sum / f64::from(self.pixels.max(1));
         if variance == 0.0 { 0.0 } else { variance.sqrt() / self.mean_radiance() }
     }
 }
@@ -92,9 +92,9 @@ impl Accumulator<'_> {
                 sum.paths += u64::from(pixel.count());
                 sum.pixels += 1;
                 sum.max_paths = sum.max_paths.max(pixel.count());
-                sum.mean += average(pixel.mean());
-                sum.variance += variance;
-                sum.path_variance += variance * f64::from(pixel.count());
+                sum.mean_sum += average(pixel.mean());
+                sum.variance_sum += variance;
+                sum.path_variance_sum += variance * f64::from(pixel.count());
             }
             sum
         })

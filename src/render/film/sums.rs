@@ -61,7 +61,7 @@ impl Sums {
         let learning = world.learning()?;
         let prepass = Prepass::new(&learning, &camera_rays, params, job.part(0.0, 0.01))?;
         let world = &learning.settled()?;
-        let prepass = prepass.in_world(world);
+        let prepass = prepass.with_world(world);
         let discarded = AtomicU64::new(0);
         let Self { corner, grid, numbers_per_pixel, numbers, .. } = &mut sums;
         exec::for_rows(numbers, AREA * *numbers_per_pixel, job.part(0.01, 1.0), |tile, numbers| {

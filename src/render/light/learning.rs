@@ -1,9 +1,10 @@
 //! Between the passes of a render, decides which lights are unlikely to reach the surfaces in view. These lights get a
-//! selector of their own with few samples. Decisions follow from the samples counted so far (see [`super::reach`]).
+//! selector of their own with few samples. Decisions follow from the samples counted so far (see
+//! [`super::lamp_visibility`]).
 
 use super::Lights;
-use super::lamps::Lamps;
-use super::reach::{Reach, Split, unlikely_share, weights};
+use super::lamp_visibility::{LampVisibility, Split, unlikely_share, weights};
+use super::luminous_surfaces::LuminousSurfaces;
 use super::survey::{ENOUGH, Progress, SampleCounts, Survey};
 use crate::error::Result;
 use crate::render::vicinity::PositionReservoir;
@@ -11,8 +12,8 @@ use std::sync::Arc;
 
 /// Unlikely lights get a selector of their own only if at least this share of all light samples so far went to them.
 /// Below this share, the selector would save hardly any samples: it would still send 3 to 10 % of the samples to
-/// unlikely lights (`reach::UNLIKELY_SHARES`). The render then keeps one selector for all lights, and its image equals,
-/// to the last bit, the image without learning. [bench buildings]
+/// unlikely lights (`lamp_visibility::UNLIKELY_SHARES`). The render then keeps one selector for all lights, and its
+/// image equals, to the last bit, the image without learning. [bench buildings]
 const MIN_GAIN: f64 = 0.2;
 /// The first decision is made after max(`FIRST_DECISION`, number of lights / 2) light samples. [convention]
 const FIRST_DECISION: u64 = 256;
@@ -85,17 +86,17 @@ impl Lights {
 
     /// Counts the lamps of the scene and those that do not reach the surfaces in view. Returns `None` if the render
     /// still has one selector for all lights, because it found too few such lamps or did not learn.
-    pub fn reach(&self) -> Result<Option<Reach>> {
+    pub fn lamp_visibility(&self) -> Result<Option<LampVisibility>> {
         let Some(split) = &self.split else { return Ok(None) };
         let own;
         let lamps = match self.lamps.get() {
             Some(lamps) => lamps,
             None => {
-                own = Lamps::new(&self.emitters, self.inventory.pieces)?;
+                own = LuminousSurfaces::new(&self.emitters, self.inventory.pieces)?;
                 self.lamps.get_or_init(|| own)
             }
         };
         let [lamps, hidden] = lamps.count(&self.inventory, |light| split.weights[light] == 0.0)?;
-        Ok(Some(Reach { lamps, hidden, samples: self.progress.counted }))
+        Ok(Some(LampVisibility { lamps, hidden, samples: self.progress.counted }))
     }
 }

@@ -11,16 +11,16 @@
 //! Power alone would ignore occlusion by walls and could leave a group with too few samples.
 
 pub(super) mod bounds;
-mod lamps;
+mod lamp_visibility;
 mod learning;
+mod luminous_surfaces;
 mod punctual;
-mod reach;
 mod selector;
 mod survey;
 mod tree;
 
 pub use bounds::{Bounds, Receiver};
-pub use reach::Reach;
+pub use lamp_visibility::LampVisibility;
 
 use super::contribution::LightSource;
 use super::emissive::{Emitters, mean_channel};
@@ -28,9 +28,9 @@ use super::environment::{self, EnvironmentSampler};
 use crate::error::Result;
 use crate::scene::{PunctualLight, Scene};
 use glam::{DVec3, Vec2, Vec3};
-use lamps::Lamps;
+use lamp_visibility::Split;
+use luminous_surfaces::LuminousSurfaces;
 use punctual::Punctual;
-use reach::Split;
 use selector::{Inventory, Selector};
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
@@ -55,8 +55,8 @@ pub struct Lights {
     progress: Progress,
     /// Whether renders may learn which lights reach the surfaces in view.
     pub learns: bool,
-    /// The surfaces of the scene grouped into lamps; computed when a render first reports its [`Reach`].
-    lamps: Arc<OnceLock<Lamps>>,
+    /// The surfaces of the scene grouped into lamps; computed when a render first reports its [`LampVisibility`].
+    lamps: Arc<OnceLock<LuminousSurfaces>>,
 }
 
 /// A sample of the light that reaches a receiver.

@@ -29,13 +29,13 @@ pub struct Alphabet {
     /// For each mesh, the index of its class. The light event of the class has the same index in `lights`.
     class_of_mesh: Vec<u32>,
     /// For each mesh, the lamps of its emission texture; `None` if no expression names one of them.
-    lamps: Vec<Option<Lamps>>,
+    lamps: Vec<Option<LampEvents>>,
     punctual: Vec<u32>,
     environment: u32,
 }
 
 /// The lamps of an emission texture: each connected patch of emissive texels has its own light event.
-struct Lamps {
+struct LampEvents {
     texture: Arc<LampTexture>,
     /// Indices in [`Alphabet::lights`]: first of the light event of the texels outside all patches, then of the light
     /// event of each patch.
@@ -102,7 +102,7 @@ impl Alphabet {
                 }
             };
             let lights = [*class].into_iter().chain((0..texture.regions.count).map(of_lamp)).collect();
-            Some(Lamps { texture, lights })
+            Some(LampEvents { texture, lights })
         });
         let lamps = lamps.collect();
         Ok(Self { scatters, lights, class_of_mesh, lamps, punctual, environment })
@@ -132,7 +132,7 @@ impl Alphabet {
     }
 }
 
-impl Lamps {
+impl LampEvents {
     fn light(&self, uv: Vec2) -> u32 {
         let LampTexture { size, wrap, regions } = &*self.texture;
         self.lights[regions.labels[texel_at(uv, *size, *wrap)] as usize]

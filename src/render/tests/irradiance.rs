@@ -162,7 +162,7 @@ fn bsdf_sampling_alone_agrees_with_mis() {
     for _ in 0..n {
         let (u, angle) = (rng.next_f32(), std::f32::consts::TAU * rng.next_f32());
         let direction = Vec3::new(u.sqrt() * angle.cos(), (1.0 - u).sqrt(), u.sqrt() * angle.sin());
-        let ray = crate::scene::accel::Ray::new(Vec3::ZERO, direction);
+        let ray = crate::accel::Ray::new(Vec3::ZERO, direction);
         let floor = world.id(0, 0)..world.id(0, 0) + 2;
         let radiance = match world.accel().closest(&ray, |hit| !floor.contains(&hit.triangle)) {
             None => 0.3,

@@ -1,11 +1,11 @@
 //! Tests of path sharing: shared paths bring the same light as separate paths, with less variance.
 
 use super::*;
+use crate::accel::Ray;
 use crate::render::path::{self, PathLength};
 use crate::render::sampler::Sampler;
 use crate::render::shared::{self, MAX_SHARED, Scratch, Start};
 use crate::render::tape::SumTape;
-use crate::scene::accel::Ray;
 
 /// A room with every case that path sharing distinguishes: matt, glossy, metal, mirror and glass surfaces, a smooth
 /// ball, leaves with alpha, a pane in front of a corner, and a pane outside the view.

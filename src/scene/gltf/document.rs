@@ -63,7 +63,7 @@ fn check_version(document: &Value) -> Result<()> {
         Err(Error::new(ErrorKind::Unsupported, message))
     };
     match (stated("minVersion")?, stated("version")?) {
-        (Some((text, least)), _) if least > [2, 0] => unsupported("minVersion", text),
+        (Some((text, min_version)), _) if min_version > [2, 0] => unsupported("minVersion", text),
         (_, Some((text, [major, _]))) if major != 2 => unsupported("version", text),
         _ => Ok(()),
     }

@@ -54,8 +54,8 @@ impl Packed {
             length: required("byteLength")?,
             view,
         };
-        let most = packed.length.saturating_mul(MAX_RATIO).saturating_add(BLOCK);
-        if packed.bytes() > most {
+        let max_bytes = packed.length.saturating_mul(MAX_RATIO).saturating_add(BLOCK);
+        if packed.bytes() > max_bytes {
             let message = format!("{} bytes cannot be in a stream of {}", packed.bytes(), packed.length);
             return Err(Error::format(message));
         }

@@ -49,8 +49,8 @@ pub fn origin(file: &File, world: DMat4) -> Result<DVec3> {
     }
     corners.retain(|corner| corner.is_finite());
     let sampled: Vec<DVec3> = corners.iter().step_by((corners.len() / SAMPLES).max(1)).copied().collect();
-    let Some((median, reach)) = detail(&sampled) else { return Ok(DVec3::ZERO) };
-    let is_near = median.abs().cmplt(DVec3::splat(GRID.max(FAR * reach)));
+    let Some((median, half_extent)) = detail(&sampled) else { return Ok(DVec3::ZERO) };
+    let is_near = median.abs().cmplt(DVec3::splat(GRID.max(FAR * half_extent)));
     Ok(DVec3::select(is_near, DVec3::ZERO, (median / GRID).round() * GRID))
 }
 

@@ -12,6 +12,7 @@
 mod bounding_rectangle;
 mod candidates;
 mod ceiling_name;
+mod coverage;
 mod facing;
 mod name;
 mod patch;

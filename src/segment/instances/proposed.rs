@@ -1,8 +1,8 @@
 //! Proposes lamps if no positive stroke lies on one: chooses the regions of the plane that are most like lamps.
 //!
 //! Lamps are compact regions with sharp contours among the brightest regions on their plane. Regions with these
-//! properties are ranked by worth, which is the contour gradient times a small power of the area. The region of highest
-//! worth is taken for a lamp, and so are regions of nearly equal worth.
+//! properties are ranked by score, which is the contour gradient times a small power of the area. The region of highest
+//! score is taken for a lamp, and so are regions of nearly equal score.
 
 use super::painted::MIN_AREA;
 use super::similar::Search;
@@ -25,10 +25,10 @@ const MIN_SOLIDITY: f64 = 0.75;
 const MAX_SHARE: f64 = 0.25;
 /// At least this share of the ring of pixels around a lamp must lie on the plane. [bench photos:nostrokes]
 const ON_PLANE: f64 = 0.6;
-/// Minimum worth of a lamp (contour gradient times a power of its area), relative to the lamp of highest worth.
+/// Minimum score of a lamp (contour gradient times a power of its area), relative to the lamp of highest score.
 /// [bench photos:nostrokes]
 const NEARLY_BEST: f64 = 0.4;
-/// Exponent of a region's area in its worth. [bench photos:nostrokes]
+/// Exponent of a region's area in its score. [bench photos:nostrokes]
 const AREA_POWER: f64 = 0.25;
 
 /// Returns the brightest pixels of a plane, at least one. Errors: the plane has no pixel (`Degenerate`).
@@ -53,7 +53,7 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
         Some(surface) => surface.area[node] / surface.shown.max(f64::MIN_POSITIVE),
         None => regions.area[node] / plane_area,
     };
-    let worth = |node: usize| regions.contour_gradient(node) * regions.area[node].powf(AREA_POWER);
+    let score = |node: usize| regions.contour_gradient(node) * regions.area[node].powf(AREA_POWER);
     let is_compact = |node: &usize| {
         regions.area[*node] >= MIN_AREA
             && share(*node) <= MAX_SHARE
@@ -62,17 +62,17 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
             && regions.solidity(*node) >= MIN_SOLIDITY
     };
     let mut candidates: Vec<(u32, f64)> =
-        (1..tree.len()).filter(is_compact).map(|node| (node as u32, worth(node))).collect();
+        (1..tree.len()).filter(is_compact).map(|node| (node as u32, score(node))).collect();
     candidates.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
 
-    // Take candidates in the order of worth. Regions inside or around a chosen region belong to that region, so skip
+    // Take candidates in the order of score. Regions inside or around a chosen region belong to that region, so skip
     // them.
     let nobody = try_vec(tree.node_of.len(), false)?;
     let mut chosen = Disjoint::new(tree)?;
     let mut lamps: Vec<u32> = Vec::new();
     let mut best = 0.0;
-    for (node, worth) in candidates {
-        if worth < NEARLY_BEST * best {
+    for (node, score) in candidates {
+        if score < NEARLY_BEST * best {
             break;
         }
         if !chosen.admits(node) {
@@ -82,7 +82,7 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
         if ring.contrast < MIN_RING || ring.on_plane < ON_PLANE {
             continue;
         }
-        best = worth.max(best);
+        best = score.max(best);
         chosen.choose(node);
         lamps.push(node);
     }

@@ -285,13 +285,13 @@ impl Search<'_> {
             return Ok(None);
         }
         let of = |f: &dyn Fn(usize) -> f64| painted.iter().map(|&n| f(n as usize)).collect::<Vec<f64>>();
-        let least = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
-        let most = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
+        let min_of = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
+        let max_of = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
         Ok(Some(Model {
-            min_area: (least(of(&|n| regions.area[n])) * MIN_AREA_RATIO).max(MIN_AREA),
-            max_area: most(of(&|n| regions.area[n])) * MAX_AREA_RATIO,
+            min_area: (min_of(of(&|n| regions.area[n])) * MIN_AREA_RATIO).max(MIN_AREA),
+            max_area: max_of(of(&|n| regions.area[n])) * MAX_AREA_RATIO,
             surface: regions.surface.as_ref().map(|surface| {
-                let min_shown = MIN_MEASURED_SHARE * most(of(&|n| regions.area[n]));
+                let min_shown = MIN_MEASURED_SHARE * max_of(of(&|n| regions.area[n]));
                 let shown: Vec<usize> =
                     painted.iter().map(|&n| n as usize).filter(|&n| regions.area[n] >= min_shown).collect();
                 let range = |f: &dyn Fn(usize) -> f64| {
@@ -304,9 +304,9 @@ impl Search<'_> {
                     aspect: [round / ROUNDER, long * LONGER],
                 }
             }),
-            max_breadth: most(of(&|n| regions.axes(n)[1])) * MAX_BREADTH_RATIO,
-            min_lightness: least(of(&|n| regions.colour(n)[0])) - DIMMER,
-            min_solidity: least(of(&|n| regions.solidity(n))) * SOLIDITY,
+            max_breadth: max_of(of(&|n| regions.axes(n)[1])) * MAX_BREADTH_RATIO,
+            min_lightness: min_of(of(&|n| regions.colour(n)[0])) - DIMMER,
+            min_solidity: min_of(of(&|n| regions.solidity(n))) * SOLIDITY,
             colours: painted.iter().map(|&n| regions.colour(n as usize)).collect(),
             rings: colours_around,
             contour: median(of(&|n| regions.contour_gradient(n) / sharpness(regions.area[n]))) * CONTOUR,

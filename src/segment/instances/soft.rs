@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::image::{Image, try_collect, try_push, try_vec};
 
 /// Distance from a region beyond which its confidence is 0, in pixels.
-/// [convention: the reach of bilinear sampling, twice]
-const REACH: u8 = 2;
+/// [convention: the radius of bilinear sampling, twice]
+const MAX_DISTANCE: u8 = 2;
 /// Minimum confidence of pixels in a region, and maximum confidence of pixels around it, so that a threshold of one
 /// half gives exactly the region. [rounding]
 const INSIDE: f32 = 0.501;
@@ -25,12 +25,12 @@ pub fn add(node: u32, search: &Search, confidence: &mut Image) -> Result<()> {
     let Search { tree, regions, photo, plane, .. } = *search;
     let filled = filled(tree.pixels(node), photo)?;
     let pixels = filled.as_slice();
-    let bounds = Bounds::of(pixels, photo, REACH.into());
+    let bounds = Bounds::of(pixels, photo, MAX_DISTANCE.into());
     let distance = bounds.distance(pixels, photo.width)?;
     // The contour lies at the lightness of the region's dimmest pixel.
     let contour = contour_lightness(tree.pixels(node), photo);
     let slope = 1.0 / (regions.contour_gradient(node as usize) as f32).max(1.0);
-    for (k, &d) in distance.iter().enumerate().filter(|(_, d)| **d <= REACH) {
+    for (k, &d) in distance.iter().enumerate().filter(|(_, d)| **d <= MAX_DISTANCE) {
         let i = bounds.pixel(k, photo.width);
         if d > 0 && plane.is_some_and(|plane| plane.data[i] <= 0.5) {
             continue;

@@ -7,7 +7,7 @@ pub use image::from_image;
 pub use text::parse;
 
 use crate::error::{Error, Result, check_range};
-use crate::image::{Image, make_room, try_collect};
+use crate::image::{Image, reserve_capacity, try_collect};
 use glam::DVec2;
 
 /// Pixels of plane strokes count as lamp if they are at least as bright as this quantile of L* under the positive
@@ -47,7 +47,7 @@ impl Stroke {
                             pixels.sort_unstable();
                             pixels.dedup();
                             let more = pixels.len().max(64);
-                            make_room(&mut pixels, more)?;
+                            reserve_capacity(&mut pixels, more)?;
                         }
                         pixels.push((y * width + x) as u32);
                     }

@@ -113,7 +113,7 @@ pub struct Chunk {
 }
 
 #[derive(Clone, Copy)]
-pub struct Layout<'a> {
+pub struct PixelTags<'a> {
     pub width: usize,
     pub height: usize,
     pub depth: Depth,
@@ -132,7 +132,7 @@ pub struct Layout<'a> {
     directory: Directory<'a>,
 }
 
-impl<'a> Layout<'a> {
+impl<'a> PixelTags<'a> {
     /// Reads and checks the tags of a directory in a file of `file_bytes` bytes.
     pub fn new(directory: Directory<'a>, file_bytes: usize) -> Result<Self> {
         check_is_picture(&directory)?;
@@ -163,7 +163,7 @@ impl<'a> Layout<'a> {
         }
 
         let Chunks { size, offsets, bytes } = Chunks::new(&directory, width, height)?;
-        let layout = Self {
+        let tags = Self {
             width,
             height,
             depth,
@@ -178,8 +178,8 @@ impl<'a> Layout<'a> {
             sizes: directory.field(bytes).ok_or_else(|| missing("StripByteCounts"))?,
             directory,
         };
-        layout.check_memory(file_bytes)?;
-        Ok(layout)
+        tags.check_memory(file_bytes)?;
+        Ok(tags)
     }
 
     /// Number of channels of the resulting image: grey with alpha becomes RGBA, palettes and CMYK become RGB.

@@ -9,7 +9,7 @@ use super::packet::WIDTH;
 use super::pages;
 use super::tree::{Tree, half_area};
 use crate::error::Result;
-use crate::image::make_room;
+use crate::image::reserve_capacity;
 use crate::job::Job;
 use glam::Vec3;
 use obvhs::aabb::Aabb;
@@ -91,8 +91,8 @@ impl CostedPart {
             if at % CHUNK == 0 {
                 job.check()?;
             }
-            make_room(&mut branches, 1)?;
-            make_room(&mut indices, 2)?;
+            reserve_capacity(&mut branches, 1)?;
+            reserve_capacity(&mut indices, 2)?;
             let index = indices[at];
             let node = &source.tree[index];
             branches.push(if let Some(&part) = cut.get(&index) {

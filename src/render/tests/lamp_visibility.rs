@@ -49,7 +49,7 @@ fn inside() -> Camera {
 fn worlds(scene: Scene) -> [World; 2] {
     let learns = world(scene);
     let mut alike = learns.clone();
-    alike.without_learning();
+    alike.disable_learning();
     [learns, alike]
 }
 
@@ -123,10 +123,10 @@ fn any_number_of_threads_learns_the_same() {
     for params in [base.clone(), Params { target_error: 0.1, samples: 256, ..base }] {
         let film = |world: &World, threads| Pool::new(threads).unwrap().run(|| render(world, &inside(), &params));
         let (one, two, seven) = (film(&learns, 1), film(&learns, 2), film(&learns, 7));
-        assert!(one.reach.is_some_and(|reach| reach.hidden >= 5), "{:?}", one.reach);
+        assert!(one.lamp_visibility.is_some_and(|seen| seen.hidden >= 5), "{:?}", one.lamp_visibility);
         for other in [two, seven] {
             assert!(one.beauty == other.beauty && one.variance == other.variance && one.paths == other.paths);
-            assert_eq!((one.reach, &one.requirements), (other.reach, &other.requirements));
+            assert_eq!((one.lamp_visibility, &one.requirements), (other.lamp_visibility, &other.requirements));
         }
         assert!(one.beauty != film(&alike, 2).beauty);
     }
@@ -138,10 +138,10 @@ fn paths_in_one_room_need_only_the_surfaces_around_it() {
     (6..30).for_each(|i| add_room(&mut scene, 3.0 * i as f32, [0.0; 2], 3));
     let surroundings = world(scene);
     let mut whole = surroundings.clone();
-    whole.without_vicinity();
+    whole.disable_vicinity();
     let params = Params { width: 40, height: 24, samples: 32, ..Params::default() };
     let [a, b] = [&surroundings, &whole].map(|world| render(world, &inside(), &params));
-    assert!(a.beauty == b.beauty && a.variance == b.variance && a.reach == b.reach);
+    assert!(a.beauty == b.beauty && a.variance == b.variance && a.lamp_visibility == b.lamp_visibility);
     // After 1024 paths, one world has an acceleration structure of the surroundings (`vicinity`), the other has none.
     let has_vicinity = |world: &World| {
         let learning = world.learning().unwrap();
@@ -187,7 +187,7 @@ fn scenes_whose_lights_all_arrive_keep_every_bit() {
     let params = Params { width: 64, height: 48, samples: 16, ..Params::default() };
     let [learned, expected] = [&learns, &alike].map(|world| render(world, &inside(), &params));
     assert!(learned.beauty == expected.beauty && learned.variance == expected.variance);
-    assert_eq!(learned.reach, None);
+    assert_eq!(learned.lamp_visibility, None);
     assert_eq!(learned.requirements, expected.requirements);
 }
 
@@ -195,15 +195,15 @@ fn scenes_whose_lights_all_arrive_keep_every_bit() {
 fn requirements_name_the_lamps_that_cannot_be_reached() {
     let film =
         render(&world(building()), &inside(), &Params { width: 64, height: 48, samples: 8, ..Params::default() });
-    let reach = film.reach.unwrap();
+    let visibility = film.lamp_visibility.unwrap();
     // There are nine lights: six lamps, a point light, the sun and the sky. The lamps of the first two rooms reach the
     // view. With so few paths, one other light may still be undecided.
-    assert!(reach.lamps == 9 && (6..=7).contains(&reach.hidden), "{reach:?}");
+    assert!(visibility.lamps == 9 && (6..=7).contains(&visibility.hidden), "{visibility:?}");
     let sentence = film.requirements.last().unwrap();
-    let start = format!("{} of 9 lamps cannot be reached from here", reach.hidden);
+    let start = format!("{} of 9 lamps cannot be reached from here", visibility.hidden);
     assert!(sentence.starts_with(&start), "{sentence}");
-    let reach = Reach { lamps: 2025, hidden: 1992, samples: 1_234_567 };
-    assert!(reach.sentence().starts_with("1,992 of 2,025 lamps") && reach.sentence().contains("1,234,567"));
+    let visibility = LampVisibility { lamps: 2025, hidden: 1992, samples: 1_234_567 };
+    assert!(visibility.sentence().starts_with("1,992 of 2,025 lamps") && visibility.sentence().contains("1,234,567"));
 }
 
 #[test]

@@ -5,11 +5,10 @@
 //! lower bound instead of an exact value.
 
 use super::clipping;
+use super::sided::Constraint;
 use crate::error::{Error, Result};
-use crate::image::Image;
+use crate::image::{Image, dilate};
 use crate::job::Job;
-use crate::relight::Constraint;
-use crate::segment;
 use glam::{DVec3, Vec3};
 
 /// The part of the photo whose mean colour the target surface should have (the two variants in Table 1 of the paper).
@@ -23,7 +22,7 @@ pub enum TargetColour {
 
 /// The target colour, computed from the photo.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Target {
+pub struct PhotoColour {
     /// Mean linear colour, relative to the photo's white.
     pub colour: Vec3,
     /// For each channel, whether `colour` is an exact target or a lower bound.
@@ -39,9 +38,15 @@ const WHITE: f32 = 1.001;
 /// [convention]
 const MOSTLY: f64 = 0.5;
 
-/// Computes the mean colour of the chosen part of the photo. If the halos cover the whole plane, the pixels of the
-/// plane outside the lights are used, halos included.
-pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: &Image, job: Job) -> Result<Target> {
+/// Computes the mean colour of the chosen part of the photo, whose plane and lights are given by masks. If the halos
+/// cover the whole plane, the pixels of the plane outside the lights are used, halos included.
+pub fn photo_colour(
+    which: TargetColour,
+    photo: &Image,
+    plane: &Image,
+    lights: &Image,
+    job: Job,
+) -> Result<PhotoColour> {
     photo.check_same_size("the photo", plane, "the plane's mask")?;
     photo.check_same_size("the photo", lights, "the lights' mask")?;
     let everything = |_: usize| true;
@@ -49,7 +54,7 @@ pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: 
         TargetColour::WholeImage => mean_where(which, photo, everything),
         TargetColour::Surface => {
             let radius = (HALO * photo.width.max(photo.height) as f32).ceil();
-            let glare = segment::dilate(lights, radius, job)?;
+            let glare = dilate(lights, radius, job)?;
             let beside = |i: usize| plane.data[i] > 0.5 && glare.data[i] <= 0.5;
             let on_plane = |i: usize| plane.data[i] > 0.5 && lights.data[i] <= 0.5;
             mean_where(which, photo, beside).or_else(|| mean_where(which, photo, on_plane))
@@ -63,7 +68,7 @@ pub(super) fn target(which: TargetColour, photo: &Image, plane: &Image, lights: 
 }
 
 /// Returns the mean colour of the selected pixels. Pixels with NaN or infinite values are ignored.
-fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bool) -> Option<Target> {
+fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bool) -> Option<PhotoColour> {
     let colours = photo.data.chunks_exact(photo.channels).map(|p| Vec3::new(p[0], p[1], p[2])).enumerate();
     let selected = &selected;
     let pixels = colours.filter(move |(i, rgb)| selected(*i) && rgb.is_finite()).map(|(_, rgb)| rgb.max(Vec3::ZERO));
@@ -71,14 +76,15 @@ fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bo
     if photo.data.iter().any(|v| *v > WHITE && v.is_finite()) {
         let (mut sum, mut count) = (DVec3::ZERO, 0.0);
         pixels.for_each(|rgb| (sum, count) = (sum + rgb.as_dvec3(), count + 1.0));
-        return (count > 0.0).then(|| Target { colour: (sum / count).as_vec3(), constraint: [Constraint::Exactly; 3] });
+        return (count > 0.0)
+            .then(|| PhotoColour { colour: (sum / count).as_vec3(), constraint: [Constraint::Exactly; 3] });
     }
     let (mean, unknown) = clipping::mean(pixels, which == TargetColour::Surface)?;
     let constraint =
         unknown.to_array().map(|share| if share > MOSTLY { Constraint::AtLeast } else { Constraint::Exactly });
-    Some(Target { colour: mean.as_vec3(), constraint })
+    Some(PhotoColour { colour: mean.as_vec3(), constraint })
 }
 
 #[cfg(test)]
-#[path = "tests/colour.rs"]
+#[path = "tests/photo_colour.rs"]
 mod tests;

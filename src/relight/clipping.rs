@@ -32,16 +32,16 @@ pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) 
     let mut count = 0.0;
     for rgb in pixels.clone() {
         count += 1.0;
-        let whole = !clipped(rgb);
-        for (x, y) in pairs().filter(|(x, y)| whole.test(*x) && whole.test(*y)) {
+        let unclipped = !clipped(rgb);
+        for (x, y) in pairs().filter(|(x, y)| unclipped.test(*x) && unclipped.test(*y)) {
             moments[y][x].add(f64::from(rgb[x]), f64::from(rgb[y]));
         }
     }
     if count == 0.0 {
         return None;
     }
-    let least = if one_plane { MIN_UNCLIPPED_SHARE * count } else { f64::INFINITY };
-    let lines = moments.map(|row| row.map(|m| m.line(least)));
+    let min_pixels = if one_plane { MIN_UNCLIPPED_SHARE * count } else { f64::INFINITY };
+    let lines = moments.map(|row| row.map(|m| m.line(min_pixels)));
     let (mut sum, mut unknown) = (DVec3::ZERO, DVec3::ZERO);
     for rgb in pixels {
         let mask = clipped(rgb);
@@ -103,10 +103,10 @@ impl Moments {
     }
 
     /// Fits the line by least squares, regularised towards the line through black. Returns `None` if there are fewer
-    /// than `least` pixels, or if channel x is black in all of them.
-    fn line(&self, least: f64) -> Option<Line> {
+    /// than `min_pixels` pixels, or if channel x is black in all of them.
+    fn line(&self, min_pixels: f64) -> Option<Line> {
         let (x, y) = (self.x / self.n, self.y / self.n);
-        if self.n < least || !(x > 0.0) {
+        if self.n < min_pixels || !(x > 0.0) {
             return None;
         }
         let (variance, covariance) = ((self.xx / self.n - x * x).max(0.0), self.xy / self.n - x * y);

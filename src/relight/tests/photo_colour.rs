@@ -10,9 +10,9 @@ use std::sync::Arc;
 
 const EXACTLY: [Constraint; 3] = [Constraint::Exactly; 3];
 
-fn whole(photo: &Image) -> Target {
+fn whole(photo: &Image) -> PhotoColour {
     let mask = |v: f32| Image::from_fn(photo.width, photo.height, |_, _| [v]).unwrap();
-    target(TargetColour::Surface, photo, &mask(1.0), &mask(0.0), Monitor::default().job()).unwrap()
+    photo_colour(TargetColour::Surface, photo, &mask(1.0), &mask(0.0), Monitor::default().job()).unwrap()
 }
 
 fn mean(photo: &Image) -> Vec3 {
@@ -49,7 +49,7 @@ fn a_clipped_channel_follows_from_the_others() {
     // In a photo that is entirely white, all targets are lower bounds. If only a few pixels are white, the targets are
     // exact.
     let white = Image::from_fn(8, 8, |_, _| [1.0; 3]).unwrap();
-    assert_eq!(whole(&white), Target { colour: Vec3::ONE, constraint: [Constraint::AtLeast; 3] });
+    assert_eq!(whole(&white), PhotoColour { colour: Vec3::ONE, constraint: [Constraint::AtLeast; 3] });
     let spark = Image::from_fn(8, 8, |x, y| [if x + y == 0 { 1.0 } else { 0.5 }; 3]).unwrap();
     assert_eq!(whole(&spark).constraint, EXACTLY);
 }

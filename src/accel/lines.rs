@@ -8,7 +8,7 @@ use super::node::Node;
 use super::packet::Packet;
 use super::pages::{self, Pages};
 use crate::error::Result;
-use crate::image::{make_room, try_with_capacity};
+use crate::image::{reserve_capacity, try_with_capacity};
 use crate::job::Job;
 use std::ops::DerefMut;
 
@@ -47,7 +47,7 @@ impl Draft {
     /// Appends a node or a packet and returns the number of its first line.
     pub fn push<T: Plain>(&mut self, item: &T) -> Result<usize> {
         let line = self.list.len();
-        make_room(&mut self.list, lines_of::<T>())?;
+        reserve_capacity(&mut self.list, lines_of::<T>())?;
         // SAFETY: `T` is `Plain`, and it fills `lines_of::<T>()` lines with the alignment of a line.
         self.list.extend_from_slice(unsafe { std::slice::from_raw_parts((&raw const *item).cast(), lines_of::<T>()) });
         Ok(line)

@@ -39,7 +39,7 @@ const SIDE_ERROR: f64 = 0.07;
 
 /// A distance with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Distance {
+pub struct CameraDistance {
     /// The distance in metres; if it is an estimate, the median of the posterior.
     pub metres: f64,
     /// Standard deviation of the logarithm of the distance, which is approximately the relative error of the distance.
@@ -47,7 +47,7 @@ pub struct Distance {
     pub error: f64,
 }
 
-impl Distance {
+impl CameraDistance {
     /// A distance that is known, with an error of 0.
     pub fn exact(metres: f64) -> Self {
         Self { metres, error: 0.0 }
@@ -105,9 +105,9 @@ mod tests {
     fn a_usual_lamp_tells_the_distance() {
         for (long, short) in [(0.6, 0.6), (1.2, 0.6), (1.2, 0.3)] {
             for metres in [1.0, 1.5, 2.2] {
-                let found = Distance::of_lamps([SHINES * long / metres, SHINES * short / metres]);
+                let found = CameraDistance::of_lamps([SHINES * long / metres, SHINES * short / metres]);
                 let off = (found.metres / metres).ln().abs();
-                let prior = Distance::of_lamps([0.0, 0.0]);
+                let prior = CameraDistance::of_lamps([0.0, 0.0]);
                 assert!(off < 0.03 && found.error < 0.75 * prior.error, "{long} x {short} at {metres} m: {found:?}");
             }
         }
@@ -115,10 +115,10 @@ mod tests {
 
     #[test]
     fn an_unusual_lamp_leaves_the_prior_and_says_so() {
-        let none = Distance::of_lamps([0.0, 0.0]);
+        let none = CameraDistance::of_lamps([0.0, 0.0]);
         assert!(none.metres > 1.2 && none.metres < 1.8 && none.error > 0.4, "{none:?}");
         for sides in [[0.1, 0.1], [0.9, 0.02], [40.0, 40.0], [1e-9, 1e-12], [f64::NAN, 1.0], [f64::INFINITY, 1.0]] {
-            let found = Distance::of_lamps(sides);
+            let found = CameraDistance::of_lamps(sides);
             assert!(found.metres.is_finite() && found.error > 0.3, "{sides:?}: {found:?}");
         }
     }
@@ -134,7 +134,7 @@ mod tests {
             let metres = median * (deviation * gauss()).exp();
             let [long, short, _] = SIZES[[0, 1, 2][k % 3]];
             let sides = [long, short].map(|side| SHINES * side / metres * (SIDE_ERROR * gauss()).exp());
-            let found = Distance::of_lamps(sides);
+            let found = CameraDistance::of_lamps(sides);
             (found.metres / metres).ln().abs() < 1.96 * found.error
         });
         let share = covered.count() as f64 / 2000.0;

@@ -7,7 +7,7 @@ use crate::image::{try_collect, try_vec, try_with_capacity};
 use crate::render::emissive::Emitters;
 
 /// The luminous surfaces of a scene, grouped into lamps.
-pub struct Lamps {
+pub struct LuminousSurfaces {
     /// For each piece of an emissive surface (a triangle, a tile of a textured triangle, or a patch of a luminaire's
     /// face), the index of its lamp.
     of_pieces: Vec<u32>,
@@ -15,7 +15,7 @@ pub struct Lamps {
     count: usize,
 }
 
-impl Lamps {
+impl LuminousSurfaces {
     /// Finds the lamps: emissive triangles that share a corner belong to one lamp, and so do all faces of a luminaire.
     /// `pieces` is the number of pieces into which the triangles are divided.
     pub fn new(emitters: &Emitters, pieces: usize) -> Result<Self> {

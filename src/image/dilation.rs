@@ -3,9 +3,9 @@
 //! Example: dilate the mask of the lights by the radius of their bloom. Outside the dilated mask, bloom does not change
 //! the colour of the ceiling.
 
+use super::Image;
 use crate::error::{Result, check_range};
 use crate::exec;
-use crate::image::Image;
 use crate::job::Job;
 
 /// Dilates a mask by a disc: a pixel becomes 1 if a pixel with a mask value above 0.5 lies within `radius` pixels of

@@ -6,7 +6,7 @@
 
 use crate::error::Result;
 use crate::image::pages::{HUGE, prefer_huge};
-use crate::image::{make_room, try_with_capacity};
+use crate::image::{reserve_capacity, try_with_capacity};
 use crate::job::Job;
 use rayon::prelude::*;
 use std::mem::MaybeUninit;
@@ -76,7 +76,7 @@ fn storage_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> 
     let huge = if bytes % HUGE >= MIN_HUGE { bytes.next_multiple_of(HUGE) } else { bytes / HUGE * HUGE };
     let around = if huge == 0 { 0 } else { 2 * HUGE / size_of::<T>() };
     let mut storage = Vec::<MaybeUninit<T>>::new();
-    make_room(&mut storage, len.saturating_add(around))?;
+    reserve_capacity(&mut storage, len.saturating_add(around))?;
     // SAFETY: the capacity was reserved above, and `MaybeUninit` items need not be initialised.
     unsafe { storage.set_len(len + around) };
     if huge == 0 {

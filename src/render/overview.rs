@@ -1,7 +1,7 @@
 //! Chooses a camera for a scene that has no camera. The chosen camera stands in a corner of the room, below the lit
 //! surface, and has the most open view of several candidates.
 
-use crate::render::World;
+use super::world::World;
 use crate::scene::surface::Surface;
 use crate::scene::{Camera, Scene};
 use glam::{Vec2, Vec3};
@@ -18,7 +18,7 @@ const RAYS: [usize; 2] = [12, 8];
 
 /// Returns the candidate camera with the longest mean line of sight. Lines of sight longer than the surface's diagonal
 /// count as this diagonal.
-pub(super) fn choose(world: &World, surface: &Surface) -> Camera {
+pub fn overview_camera(world: &World, surface: &Surface) -> Camera {
     let depth = depth_below(world.scene(), surface);
     let mut best = (f32::NEG_INFINITY, None);
     for corner in 0..4 {

@@ -7,13 +7,13 @@ use std::ops::Range;
 
 /// The patches of all luminaires with faces.
 #[derive(Default)]
-pub struct Patches {
-    patches: Vec<Patch>,
+pub struct FacePatches {
+    patches: Vec<PatchEmitters>,
     luminaires: Vec<Luminaire>,
 }
 
 #[derive(Clone, Copy)]
-struct Patch {
+struct PatchEmitters {
     luminaire: u32,
     /// Index of the first emitter of the patch, and number of its emitters.
     first: u32,
@@ -26,7 +26,7 @@ struct Luminaire {
     emission: FaceEmission,
 }
 
-impl Patches {
+impl FacePatches {
     /// Adds a luminaire: its index among the lights of the scene, and the luminance of its faces.
     pub fn add_luminaire(&mut self, light: usize, emission: FaceEmission) {
         self.luminaires.push(Luminaire { light: light as u32, emission });
@@ -35,7 +35,7 @@ impl Patches {
     /// Adds a patch of the luminaire that will be added next, with the range of its emitters.
     pub fn add_patch(&mut self, emitters: Range<usize>) {
         let luminaire = self.luminaires.len() as u32;
-        self.patches.push(Patch { luminaire, first: emitters.start as u32, count: emitters.len() as u32 });
+        self.patches.push(PatchEmitters { luminaire, first: emitters.start as u32, count: emitters.len() as u32 });
     }
 
     /// Returns the number of patches.
@@ -46,7 +46,7 @@ impl Patches {
     /// Samples a point of a patch. Returns the index of the emitter and the barycentric coordinates of the point.
     #[inline]
     pub fn sample(&self, patch: usize, (u, v): (f64, f32)) -> (usize, Vec2) {
-        let Patch { first, count, .. } = self.patches[patch];
+        let PatchEmitters { first, count, .. } = self.patches[patch];
         // Select a triangle by `u`, and rescale the remainder to [0, 1).
         let scaled = u * f64::from(count);
         let triangle = (scaled as u32).min(count - 1);

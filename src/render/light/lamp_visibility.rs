@@ -48,7 +48,7 @@ const UNLIKELY: u32 = 1 << 31;
 
 /// What a render has learned about which lamps reach the surfaces in view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Reach {
+pub struct LampVisibility {
     /// Number of all lamps of the scene: connected luminous surfaces, punctual lights, and the environment.
     pub lamps: usize,
     /// Number of hidden lamps. A lamp is hidden if none of its light samples has arrived at a vertex of a path so far,
@@ -58,7 +58,7 @@ pub struct Reach {
     pub samples: u64,
 }
 
-impl Reach {
+impl LampVisibility {
     /// Returns the result as a sentence for the user, which explains how lamps out of reach are treated.
     pub fn sentence(&self) -> String {
         let [hidden, lamps, samples] = [self.hidden, self.lamps, self.samples as usize].map(grouped);

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// The lamps of an emission, numbered from 0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Lamps {
+pub struct EmissionLamps {
     count: usize,
     /// For each texel or triangle, the number of its lamp plus one; 0 outside the lamps.
     labels: Vec<u32>,
@@ -34,7 +34,7 @@ enum Division {
     Lights,
 }
 
-impl Lamps {
+impl EmissionLamps {
     /// Makes lamps from a label image: each texel holds the number of its lamp plus one, or 0 outside the lamps.
     ///
     /// # Errors
@@ -268,21 +268,21 @@ mod tests {
         // The picture has two regions. One of them consists of two texels that touch only at a corner.
         let rows = ["#....", ".#..#", "....#"];
         let image = Image::from_fn(5, 3, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
-        let lamps = Lamps::of_texture(&image).unwrap();
+        let lamps = EmissionLamps::of_texture(&image).unwrap();
         assert_eq!(lamps.count(), 2);
         let at = |x: f32, y: f32| lamps.find(0, 0, Vec2::new(x / 5.0, y / 3.0));
         assert_eq!([at(0.5, 0.5), at(1.5, 1.5), at(4.5, 2.5), at(2.5, 0.5)], [Some(0), Some(0), Some(1), None]);
         // The texture repeats.
         assert_eq!([at(-0.5, 1.5), at(5.5, 0.5)], [Some(1), Some(0)]);
         assert!((lamps.centres()[1] - Vec3::new(0.9, 2.0 / 3.0, 0.0)).length() < 1e-6);
-        assert!(Lamps::of_texture(&Image::new(3, 3, 3).unwrap()).is_err());
+        assert!(EmissionLamps::of_texture(&Image::new(3, 3, 3).unwrap()).is_err());
         // Lamps of equal area are of one type. Areas of four and five texels are also of one type, but areas of two
         // and three texels are not.
         assert_eq!(lamps.types(), (vec![0, 0], 1));
         let labels = vec![1, 1, 0, 2, 2, 2, 0, 3, 3];
-        assert_eq!(Lamps::of_labels(9, 1, labels).unwrap().types(), (vec![0, 1, 0], 2));
+        assert_eq!(EmissionLamps::of_labels(9, 1, labels).unwrap().types(), (vec![0, 1, 0], 2));
         let labels = vec![1, 1, 1, 1, 0, 2, 2, 2, 2, 2, 0, 3, 3, 3, 3];
-        assert_eq!(Lamps::of_labels(15, 1, labels).unwrap().types(), (vec![0; 3], 1));
+        assert_eq!(EmissionLamps::of_labels(15, 1, labels).unwrap().types(), (vec![0; 3], 1));
         // Each lamp is multiplied by its own scale.
         let scaled = lamps.scaled(&image, &[DVec3::splat(2.0), DVec3::new(1.0, 0.0, 3.0)]).unwrap();
         assert_eq!(
@@ -296,15 +296,15 @@ mod tests {
         // The first and the third triangle share a vertex.
         let triangles = vec![[0, 1, 2], [3, 4, 5], [6, 7, 0]];
         let scene = Scene { meshes: vec![Mesh { positions, triangles, ..Mesh::default() }], ..Scene::default() };
-        let lamps = Lamps::of_meshes(&scene, 0).unwrap();
+        let lamps = EmissionLamps::of_meshes(&scene, 0).unwrap();
         assert_eq!([0, 1, 2].map(|t| lamps.find(0, t, Vec2::ZERO)), [Some(0), Some(1), Some(0)]);
         assert_eq!(lamps.rows(0, 1.0).1, 2);
         // Punctual lights are grouped by kind, not by intensity.
         let point = |intensity: f32| PunctualLight::Point { position: Vec3::X, intensity: Vec3::splat(intensity) };
         let sun = PunctualLight::Directional { direction: Vec3::X, illuminance: Vec3::ONE };
         let lights = Scene { lights: vec![sun, point(1.0), point(9.0)], ..Scene::default() };
-        assert_eq!(Lamps::of_lights(&lights).unwrap().types(), (vec![1, 0, 0], 2));
-        assert!(Lamps::of_lights(&scene).is_err());
-        assert!(Lamps::of_meshes(&scene, 1).is_err());
+        assert_eq!(EmissionLamps::of_lights(&lights).unwrap().types(), (vec![1, 0, 0], 2));
+        assert!(EmissionLamps::of_lights(&scene).is_err());
+        assert!(EmissionLamps::of_meshes(&scene, 1).is_err());
     }
 }

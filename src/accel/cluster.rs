@@ -261,8 +261,8 @@ impl Boxes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::leaves;
     use crate::job::Monitor;
-    use crate::scene::accel::leaves;
     use crate::simd::forced;
     use glam::Vec3;
 
