@@ -122,8 +122,8 @@ impl<'a> Lines<'a> {
     }
 
     /// Median depth of the pixels at position `u` across the bars, in the range `along`, weighted by sharpness up to 1
-    /// photo pixel per unwarped pixel. `None` if fewer than `min_known` pixels have light on both sides. Bars that cross
-    /// do not change the median, because they cover only a few of these pixels.
+    /// photo pixel per unwarped pixel. `None` if fewer than `min_known` pixels have light on both sides. Bars that
+    /// cross do not change the median, because they cover only a few of these pixels.
     fn median_depth(&self, u: usize, along: Range<usize>, min_known: usize) -> Option<f32> {
         let mut depths: Vec<(f64, f64)> = Vec::new();
         for start in along.clone().step_by(self.section_length()) {
