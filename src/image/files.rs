@@ -318,7 +318,8 @@ mod tests {
         io::Read::read_exact(&mut reader, &mut read).unwrap();
         assert_eq!(&read, b"through");
         assert!(fs::metadata(&fifo).unwrap().file_type().is_fifo());
-        // Write through a link to a device, so that a defect can only harm the link.
+        // Writing to a device must not replace it by a file. Write through a link to the device: if `write_file`
+        // wrongly replaced the path that it is given, only the link would be lost.
         let null = folder.join("null");
         symlink("/dev/null", &null).unwrap();
         write_file(&null, b"away").unwrap();

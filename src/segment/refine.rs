@@ -140,8 +140,9 @@ widest! {
 }
 
 widest! {
-    /// Fits the function `a · I + b` in the window around each pixel of a row. A fit is stored as 1, a (3 values) and
-    /// b; for pixels outside the region, all five values are 0.
+    /// In the window around each pixel of a row, fits the probabilities of the mask by a linear function `a · I + b` of
+    /// the colour I (the guided filter). A fit is stored as five values: 1, which counts the fits when they are
+    /// averaged, a (3 values) and b. For pixels outside the region, all five values are 0.
     fn fit_row(of: &Refinement, line: &Line, fits: &mut [[f32; 5]]) {
         let width = fits.len();
         let epsilon = of.tolerance * of.tolerance;

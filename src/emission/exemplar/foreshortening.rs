@@ -51,7 +51,8 @@ pub struct MagnificationLimit {
 }
 
 impl MagnificationLimit {
-    /// The part of the image with at most `max_magnification`; `None` if all `shown` pixels meet this limit.
+    /// The part of the image that is magnified at most `max_magnification` times as much as the least magnified `shown`
+    /// pixel; `None` if all `shown` pixels meet this limit.
     pub fn new(to_photo: Homography, (shown, width): (&[bool], usize), max_magnification: f64) -> Option<Self> {
         let denominator = |i: usize| denominator(&to_photo, pixel_centre(i, width));
         let values = || (0..shown.len()).filter(|&i| shown[i]).map(denominator);
