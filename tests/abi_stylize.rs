@@ -124,7 +124,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         let all = report(stylize);
         assert!(all.is_complete == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
-        assert!(all.whole > 0.0 && all.whole <= 1.0);
+        assert!(all.unblended_share > 0.0 && all.unblended_share <= 1.0);
 
         // Read the rounds of the only level, and the passes of its first round, whose coverage rises.
         let (mut width, mut rounds) = (0, 0);
@@ -158,14 +158,14 @@ fn a_target_is_stylised_and_reported_level_by_level() {
             let count = picture.chunks_exact(3).filter(|p| palette.contains(&colour(p))).count();
             count as f64 / (picture.len() / 3) as f64
         };
-        assert!(copied(&picture) >= all.whole, "{} {}", copied(&picture), all.whole);
+        assert!(copied(&picture) >= all.unblended_share, "{} {}", copied(&picture), all.unblended_share);
         assert!(sources.chunks_exact(2).all(|s| s[0] > 0.0 && s[0] < 60.0 && s[1] > 0.0 && s[1] < 44.0));
 
         // The vote for most makes no blends.
-        let most = luxfer_stylize_params { final_vote: LUXFER_STYLIZE_VOTE_MOST, ..params() };
+        let most = luxfer_stylize_params { final_vote: LUXFER_STYLIZE_VOTE_MAJORITY, ..params() };
         assert_eq!(run(stylize, &most), LUXFER_OK);
         let unblended = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
-        assert_eq!((report(stylize).whole, copied(&pixels(unblended).2)), (1.0, 1.0));
+        assert_eq!((report(stylize).unblended_share, copied(&pixels(unblended).2)), (1.0, 1.0));
         assert_eq!(luxfer_release(unblended.cast()), LUXFER_OK);
 
         // The preview preset makes a picture of half the size.

@@ -522,7 +522,7 @@ typedef struct luxfer_importance_report {
      * The response that cells of twice the width and height would give, minus the field response, in cd/m². The error
      * that comes from the size of the cells is about a third of this difference, which also contains noise.
      */
-    double band_error[3];
+    double resolution_difference[3];
 } luxfer_importance_report;
 
 /** Creates an importance map. It has no inputs yet. The caller releases *importance. Any thread. */
@@ -666,7 +666,7 @@ typedef struct luxfer_placement {
      * About a third of this difference is the error of response that comes from the size of the map's cells. The
      * difference also contains noise.
      */
-    double band_error[3];
+    double resolution_difference[3];
 } luxfer_placement;
 
 /** Make the luminance of the target as large as possible. */

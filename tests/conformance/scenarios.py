@@ -213,7 +213,7 @@ def emission() -> Scenario:
     s.call("emission_get_corner", stage, 0, 0, ROOM, ROOM)
     s.call("emission_clear_styles", stage)
     s.call("emission_add_style", stage, unwarped, light, valid, unwarped, array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1), 1.0, s.image(2, 2, 1, 0.5))
-    s.run("emission_start_plan", stage, struct("emission_params", width=48, height=40))
+    s.run("emission_start_composition", stage, struct("emission_params", width=48, height=40))
     s.make("emission_render_tile", stage, 16, 8, 20, 30)
     return s
 

@@ -116,7 +116,7 @@ void lighting_transfer(const Context &context) {
     emission.add_style(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID), 1, nowhere);
     emission.clear_styles();
     emission.add_style(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID), photo, view.to_photo, 2, nowhere);
-    emission.start_plan(texture).wait();
+    emission.start_composition(texture).wait();
     const Image tile = emission.render_tile(40, 10, 30, 20);
     CHECK(has_size(tile, 30, 20, 4));
 
@@ -176,7 +176,7 @@ void lighting_transfer(const Context &context) {
         }
         CHECK_STATUS(beyond, LUXFER_NOT_FOUND);
     }
-    CHECK(lists[4].count() == 0); // An emission that was only planned (start_plan) has no warnings.
+    CHECK(lists[4].count() == 0); // An emission that was only composed (start_composition) has no warnings.
 
     const auto plan = luxfer::Plan::create(context);
     luxfer::PlanParams budget;

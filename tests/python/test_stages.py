@@ -164,7 +164,7 @@ class Transfer(Case):
         whole = emission.run(width=150, height=130).image().numpy()
         mask = emission.image("mask").numpy()
         lamps, lit = emission.luminaires, emission.report.exemplar_lamps
-        emission.start_plan(width=150, height=130).wait()
+        emission.start_composition(width=150, height=130).wait()
         self.assertEqual(emission.report.exemplar_lamps, lit)
         planned = {lamp.centre: lamp.area for lamp in emission.luminaires}
         self.assertEqual(planned, {lamp.centre: lamp.area for lamp in lamps})
@@ -491,10 +491,10 @@ class Stylisation(Case):
         stylize = luxfer.Stylize(context(), artwork)
         stylize.add_guides(self.ball, self.still, "materials")
         stylize.run()
-        self.assertGreater(stylize.report.whole, 0.1)
-        self.assertLess(stylize.report.whole, 1)
-        stylize.run(final_vote="most")
-        self.assertEqual(stylize.report.whole, 1)
+        self.assertGreater(stylize.report.unblended_share, 0.1)
+        self.assertLess(stylize.report.unblended_share, 1)
+        stylize.run(final_vote="majority")
+        self.assertEqual(stylize.report.unblended_share, 1)
         picture, sources = stylize.image().numpy(), stylize.image("sources").numpy().astype(int)
         self.assertEqual(picture.shape, (48, 64, 3))
         # This final vote copies pixels, so every colour of the picture occurs in the artwork.

@@ -166,8 +166,8 @@ LUXFER_LAW_FREE = 5
 LUXFER_LAW_COPY = 6
 LUXFER_EMISSION_TEXTURE = 0
 LUXFER_EMISSION_MASK = 1
-LUXFER_EMISSION_EXEMPLAR_METADATA = 2
-LUXFER_EMISSION_METADATA = 3
+LUXFER_EMISSION_EXEMPLAR_GUIDES = 2
+LUXFER_EMISSION_GUIDES = 3
 LUXFER_QUANTITY_OUTGOING = 0
 LUXFER_QUANTITY_INCIDENT = 1
 LUXFER_FIT_MEAN = 0
@@ -294,11 +294,11 @@ LUXFER_STYLIZE_MODE_GREEDY = 3
 LUXFER_STYLIZE_MODE_LIT_SPHERE = 4
 LUXFER_STYLIZE_MODE_OCCURRENCE = 5
 LUXFER_STYLIZE_SEARCH_PATCHMATCH = 0
-LUXFER_STYLIZE_SEARCH_TABLE = 1
+LUXFER_STYLIZE_SEARCH_KD_TREE = 1
 LUXFER_STYLIZE_VOTE_PLAIN = 0
 LUXFER_STYLIZE_VOTE_WEIGHTED = 1
 LUXFER_STYLIZE_VOTE_NEAREST = 2
-LUXFER_STYLIZE_VOTE_MOST = 3
+LUXFER_STYLIZE_VOTE_MAJORITY = 3
 LUXFER_STYLIZE_VOTE_ADAPTIVE = 4
 LUXFER_GUIDES_WITH_NORMALS = 1
 LUXFER_GUIDES_WITH_EDGES = 2
@@ -870,7 +870,7 @@ class luxfer_emission_params(Structure):
         ("block", c_uint32),
         ("scale", c_double),
         ("working_side", c_uint32),
-        ("metadata_weight", c_float),
+        ("guide_weight", c_float),
         ("seed", c_uint64),
         ("min_regularity", c_float),
         ("whole_lamps", c_uint32),
@@ -891,7 +891,7 @@ class luxfer_emission_params(Structure):
 
 class luxfer_emission_report(Structure):
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
-    quality. A plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error
+    quality. A plan (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error
     is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe
     the first one."""
 
@@ -1215,7 +1215,7 @@ class luxfer_importance_report(Structure):
         ("paths", c_uint32),
         ("response", c_double * 3),
         ("half_width", c_double * 3),
-        ("band_error", c_double * 3),
+        ("resolution_difference", c_double * 3),
     ]
     result = types.ImportanceReport
 
@@ -1253,7 +1253,7 @@ class luxfer_placement(Structure):
         ("rotation", c_double),
         ("response", c_double * 3),
         ("half_width", c_double * 3),
-        ("band_error", c_double * 3),
+        ("resolution_difference", c_double * 3),
     ]
     result = types.Placement
 
@@ -1440,7 +1440,7 @@ class luxfer_stylize_params(Structure):
         ("iterations", c_uint32),
         ("finest_iterations", c_uint32),
         ("polish", c_uint32),
-        ("sweeps", c_uint32),
+        ("search_iterations", c_uint32),
         ("coverage", c_float),
         ("passes", c_uint32),
         ("settle", c_uint32),
@@ -1477,7 +1477,7 @@ class luxfer_stylize_report(Structure):
         ("guide_error", c_double),
         ("broken_source", c_uint64),
         ("broken_target", c_uint64),
-        ("whole", c_double),
+        ("unblended_share", c_double),
     ]
     result = types.StylizeReport
 
@@ -1707,7 +1707,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_emission_get_corner": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("corner", c_uint32), ("x", POINTER(c_double)), ("y", POINTER(c_double))]),
     "luxfer_emission_add_style": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double)), ("scale", c_double), ("weights", POINTER(luxfer_image))]),
     "luxfer_emission_clear_styles": (c_int32, [("emission", POINTER(luxfer_emission))]),
-    "luxfer_emission_start_plan": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_emission_start_composition": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_emission_render_tile": (c_int32, [("emission", POINTER(luxfer_emission)), ("x", c_uint32), ("y", c_uint32), ("width", c_uint32), ("height", c_uint32), ("tile", POINTER(POINTER(luxfer_image)))]),
     "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
     "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
