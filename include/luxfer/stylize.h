@@ -148,7 +148,7 @@ typedef int32_t luxfer_stylize_search;
 typedef int32_t luxfer_stylize_vote;
 
 /**
- * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
+ * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_get_preset. The defaults
  * stated here belong to LUXFER_STYLIZE_FULL.
  */
 typedef struct luxfer_stylize_params {
@@ -339,9 +339,9 @@ typedef int32_t luxfer_stylize_preset;
  * LUXFER_STYLIZE_PAPER. size is sizeof *params. Any thread.
  * LUXFER_INVALID_ARGUMENT if preset is another value.
  */
-luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
-                                           luxfer_stylize_preset preset,
-                                           size_t size);
+luxfer_status luxfer_stylize_get_preset(luxfer_stylize_params *params,
+                                        size_t size,
+                                        luxfer_stylize_preset preset);
 
 /* ====================================================================================================================
  * Stylisation

@@ -64,7 +64,7 @@ pub const LUXFER_STYLIZE_VOTE_MAJORITY: luxfer_stylize_vote = 3;
 /// luxfer_stylize_report.unblended_share is the share of whole pixels.
 pub const LUXFER_STYLIZE_VOTE_ADAPTIVE: luxfer_stylize_vote = 4;
 
-/// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
+/// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_get_preset. The defaults
 /// stated here belong to LUXFER_STYLIZE_FULL.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -221,10 +221,10 @@ impl luxfer_stylize_params {
 /// LUXFER_STYLIZE_PAPER. size is sizeof *params. Any thread.
 /// LUXFER_INVALID_ARGUMENT if preset is another value.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_params_preset(
+pub unsafe extern "C" fn luxfer_stylize_get_preset(
     params: *mut luxfer_stylize_params,
-    preset: luxfer_stylize_preset,
     size: usize,
+    preset: luxfer_stylize_preset,
 ) -> luxfer_status {
     guard(|| {
         let place = params::Report::new(params, size)?;

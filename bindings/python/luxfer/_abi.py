@@ -1785,7 +1785,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_guides_start": (c_int32, [("guides", POINTER(luxfer_guides)), ("params", POINTER(luxfer_guides_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_guides_get_image": (c_int32, [("guides", POINTER(luxfer_guides)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_guides_get_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("previous", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_stylize_params_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("preset", c_int32), ("size", c_size_t)]),
+    "luxfer_stylize_get_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("size", c_size_t), ("preset", c_int32)]),
     "luxfer_stylize_create": (c_int32, [("context", POINTER(luxfer_context)), ("stylize", POINTER(POINTER(luxfer_stylize)))]),
     "luxfer_stylize_set_artwork": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("artwork", POINTER(luxfer_image))]),
     "luxfer_stylize_add_guide": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("name", c_char_p), ("source", POINTER(luxfer_image)), ("target", POINTER(luxfer_image)), ("weight", c_float), ("range", c_int32)]),
