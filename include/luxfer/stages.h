@@ -635,8 +635,8 @@ luxfer_status luxfer_segment_set_region(luxfer_segment *segment,
  * LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the features.
  */
 luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
-                                         luxfer_strokes *strokes,
-                                         luxfer_phase phase);
+                                         luxfer_phase phase,
+                                         luxfer_strokes *strokes);
 
 /**
  * Starts a job that computes the mask. If strokes are missing and the features come from luxfer_features, the job

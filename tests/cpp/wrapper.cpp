@@ -547,9 +547,9 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(strokes.add("plane one"), LUXFER_FORMAT);
     CHECK_ERROR(luxfer::Strokes::create(context, 0, 7), LUXFER_INVALID_ARGUMENT);
     CHECK_ERROR(luxfer::Strokes::from_image(Image()), LUXFER_INVALID_ARGUMENT);
-    OK(segment.set_strokes(strokes, LUXFER_PHASE_PLANE));
+    OK(segment.set_strokes(LUXFER_PHASE_PLANE, strokes));
     OK(segment.set_features(new_image(context)));
-    CHECK_ERROR(segment.set_strokes(strokes, LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
+    CHECK_ERROR(segment.set_strokes(LUXFER_PHASE_PLANE, strokes), LUXFER_INVALID_ARGUMENT);
 }
 
 } // namespace

@@ -74,13 +74,13 @@ void lighting_transfer(const Context &context) {
     const auto plane = copied(luxfer::Segment::create(context));
     plane.set_features(channels);
     const auto drawn = luxfer::Strokes::from_image(strokes);
-    plane.set_strokes(drawn, LUXFER_PHASE_PLANE);
+    plane.set_strokes(LUXFER_PHASE_PLANE, drawn);
     plane.start().wait();
     CHECK(plane.report().positive_samples > 0);
     const auto lights = luxfer::Segment::create(context);
     lights.set_features(channels);
     lights.set_region(plane.image(LUXFER_SEGMENT_MASK));
-    lights.set_strokes(drawn, LUXFER_PHASE_LIGHTS);
+    lights.set_strokes(LUXFER_PHASE_LIGHTS, drawn);
     luxfer::SegmentParams colour;
     colour.channels = 7;
     lights.start(colour).wait();

@@ -74,7 +74,7 @@ class Transfer(Case):
         features.set_strokes(strokes)
         features.run()
         plane = luxfer.Segment(context(), features.image())
-        plane.set_strokes(strokes, "plane")
+        plane.set_strokes("plane", strokes)
         plane.run()
         transfer = luxfer.Transfer(context(), photo)
         transfer.set_strokes(strokes)
@@ -84,7 +84,7 @@ class Transfer(Case):
 
         lights = luxfer.Segment(context(), features.image())
         lights.set_region(plane.image())
-        lights.set_strokes(strokes, "lights")
+        lights.set_strokes("lights", strokes)
         lights.run(channels=7)
         view.set_mask(plane.image())
         view.run(max_side=256)
@@ -123,7 +123,7 @@ class Transfer(Case):
         segment, lines = luxfer.Segment(context(), face), luxfer.Strokes(context(), 80, 60)
         for y, positive in ((5, True), (20, True), (40, False), (50, False)):
             lines.add("plane", [(5, y), (45, y)], radius=2, positive=positive)
-        segment.set_strokes(lines, "plane")
+        segment.set_strokes("plane", lines)
         segment.run()
         unseen = [w for w in segment.warnings if w.code == luxfer.types.WarningCode.UNSEEN]
         self.assertEqual([w.stage for w in unseen], [luxfer.types.Stage.PLANE])
@@ -131,7 +131,7 @@ class Transfer(Case):
         x, y = unseen[0].place
         self.assertTrue(50 < x < 80 and y < 30, unseen[0])
         lines.add("plane", [(x, y)], radius=2, positive=True)
-        segment.set_strokes(lines, "plane")
+        segment.set_strokes("plane", lines)
         self.assertNotIn(luxfer.types.WarningCode.UNSEEN, [w.code for w in segment.run().warnings])
 
         # Each stage has a list of warnings.
@@ -197,14 +197,14 @@ class Transfer(Case):
         ):
             segment, strokes = luxfer.Segment(context(), photo), luxfer.Strokes(context(), 60, 40)
             describe(strokes)
-            segment.set_strokes(strokes, "plane")
+            segment.set_strokes("plane", strokes)
             strokes.clear()  # the stage has a copy
             masks.append(segment.run().image("mask").numpy()[..., 0])
             self.assertTrue((masks[-1][:20] == 1).all() and (masks[-1][20:] == 0).all())
         np.testing.assert_array_equal(*masks)
         with self.assertRaises(errors.FormatError):
             strokes.add_text("plane 3 5")
-        segment.set_strokes(None, "plane")
+        segment.set_strokes("plane", None)
         with self.assertRaises(errors.Degenerate):
             segment.run()
         with self.assertRaisesRegex(errors.InvalidArgument, "strokes are for 40 x 60 pixels"):

@@ -135,8 +135,8 @@ public:
     Result<> set_region(const Image &region) const { return call(luxfer_segment_set_region, region.get()); }
 
     /// Sets the strokes and selects those of phase, a LUXFER_PHASE_ value; empty means none.
-    Result<> set_strokes(const Strokes &strokes, luxfer_phase phase) const {
-        return call(luxfer_segment_set_strokes, strokes.get(), phase);
+    Result<> set_strokes(luxfer_phase phase, const Strokes &strokes) const {
+        return call(luxfer_segment_set_strokes, phase, strokes.get());
     }
 
     Result<Job> start(const luxfer_segment_params &params = SegmentParams()) const {

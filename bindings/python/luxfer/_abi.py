@@ -1693,7 +1693,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_segment_create": (c_int32, [("context", POINTER(luxfer_context)), ("segment", POINTER(POINTER(luxfer_segment)))]),
     "luxfer_segment_set_features": (c_int32, [("segment", POINTER(luxfer_segment)), ("features", POINTER(luxfer_image))]),
     "luxfer_segment_set_region": (c_int32, [("segment", POINTER(luxfer_segment)), ("region", POINTER(luxfer_image))]),
-    "luxfer_segment_set_strokes": (c_int32, [("segment", POINTER(luxfer_segment)), ("strokes", POINTER(luxfer_strokes)), ("phase", c_int32)]),
+    "luxfer_segment_set_strokes": (c_int32, [("segment", POINTER(luxfer_segment)), ("phase", c_int32), ("strokes", POINTER(luxfer_strokes))]),
     "luxfer_segment_start": (c_int32, [("segment", POINTER(luxfer_segment)), ("params", POINTER(luxfer_segment_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_segment_get_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_segment_get_report": (c_int32, [("segment", POINTER(luxfer_segment)), ("report", POINTER(luxfer_segment_report)), ("size", c_size_t)]),
