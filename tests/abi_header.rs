@@ -506,7 +506,7 @@ layouts! {
     luxfer_photo_metadata: struct_size orientation focal focal_error f_number exposure_time iso white_luminance
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
-    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area sloped_area;
+    luxfer_surface: struct_size reserved triangles origin u_axis v_axis normal size area sloped_area;
     luxfer_scene_load_params: struct_size allow_external_files unit keep_origin luminaire_shape;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
@@ -576,7 +576,7 @@ layouts! {
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved plane_distance plane_distance_error proposed_white
         proposed_white_low proposed_white_high preview_error;
-    luxfer_candidate: struct_size kind index triangles area level_area height low high normal score reserved name reason;
+    luxfer_candidate: struct_size kind index area level_area height low high normal score triangles name reason;
     luxfer_warning: struct_size code stage has_place severity limit place message advice;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;

@@ -21,19 +21,19 @@ fn a_mesh_comes_back_as_it_was_described() {
         assert_eq!((info.material, info.vertex_count, info.triangle_count), (1, 4, 2));
         assert_eq!((info.has_normals, info.uv_sets), (0, 0));
         let (mut positions, mut indices) = ([0.0f32; 12], [0u32; 6]);
-        let read = |attribute, capacity, values| luxfer_scene_read_vertices(scene, 1, attribute, capacity, values);
+        let read = |attribute, capacity, values| luxfer_scene_read_vertices(scene, 1, attribute, values, capacity);
         assert_eq!(read(LUXFER_VERTEX_POSITION, 4, positions.as_mut_ptr()), LUXFER_OK);
-        assert_eq!(luxfer_scene_read_triangles(scene, 1, 2, indices.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, indices.as_mut_ptr(), 2), LUXFER_OK);
         assert_eq!(positions, [-0.5, 1.9, -0.5, 0.5, 1.9, -0.5, 0.5, 1.9, 0.5, -0.5, 1.9, 0.5]);
         assert_eq!(indices, [0, 1, 2, 0, 2, 3]);
         // Nothing is written if the array is too small.
         let (mut positions, mut indices) = ([7.0f32; 12], [7u32; 6]);
-        assert_eq!(luxfer_scene_read_triangles(scene, 1, 1, indices.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, indices.as_mut_ptr(), 1), LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("room for 1 triangles; 2"), "{}", message(context));
         assert_eq!(read(LUXFER_VERTEX_POSITION, 3, positions.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
         assert_eq!((positions, indices), ([7.0; 12], [7; 6]));
         assert_eq!(read(LUXFER_VERTEX_POSITION, 4, null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_read_triangles(scene, 1, 2, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, null_mut(), 2), LUXFER_INVALID_ARGUMENT);
         for lacking in [LUXFER_VERTEX_NORMAL, LUXFER_VERTEX_UV_0, LUXFER_VERTEX_UV_1, LUXFER_VERTEX_COLOUR] {
             assert_eq!(read(lacking, 4, positions.as_mut_ptr()), LUXFER_NOT_FOUND);
         }

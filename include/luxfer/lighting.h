@@ -322,7 +322,7 @@ luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
  */
 luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
                                       const double *levels,
-                                      uint32_t count);
+                                      size_t count);
 
 /** Removes all goals. Any thread. */
 luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
@@ -993,7 +993,7 @@ typedef struct luxfer_preset {
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    const double *primaries,
-                                   uint32_t count,
+                                   size_t count,
                                    double max_drive,
                                    const double *colour,
                                    double *drives,
@@ -1259,12 +1259,12 @@ luxfer_status luxfer_pendants_find(luxfer_context *context,
                                    luxfer_image *mask,
                                    luxfer_rectify *view,
                                    const double *suspensions,
-                                   uint32_t suspension_count,
+                                   size_t suspension_count,
                                    const luxfer_pendants_params *params,
                                    luxfer_pendant *pendants,
                                    size_t size,
-                                   uint32_t capacity,
-                                   uint32_t *count);
+                                   size_t capacity,
+                                   size_t *count);
 
 /**
  * Adds count meshes, 1 to 1024, to a scene. All have the same body, that of pendant, which luxfer_pendants_find has
@@ -1280,7 +1280,7 @@ luxfer_status luxfer_pendants_find(luxfer_context *context,
 luxfer_status luxfer_scene_add_pendants(luxfer_scene *scene,
                                         const luxfer_pendant *pendant,
                                         const double *places,
-                                        uint32_t count,
+                                        size_t count,
                                         float diameter,
                                         float luminance,
                                         uint32_t *first_mesh,

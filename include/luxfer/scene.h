@@ -59,8 +59,10 @@ typedef struct luxfer_scene_counts {
 typedef struct luxfer_surface {
     /** sizeof(luxfer_surface), set by the function that fills the struct. */
     uint32_t struct_size;
+    /** Reserved; always 0. */
+    uint32_t reserved;
     /** Number of triangles in the plane. */
-    uint32_t triangles;
+    uint64_t triangles;
     /** Corner of the bounding rectangle where u = v = 0, in metres. */
     float origin[3];
     /** Unit vector of u, along the first side of the rectangle. */
@@ -968,8 +970,8 @@ luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
 luxfer_status luxfer_scene_read_vertices(luxfer_scene *scene,
                                          uint32_t index,
                                          luxfer_vertex_attribute attribute,
-                                         size_t capacity,
-                                         float *values);
+                                         float *values,
+                                         size_t capacity);
 
 /**
  * Copies the triangles of a mesh into the array indices, a packed array of the caller with room for capacity
@@ -979,8 +981,8 @@ luxfer_status luxfer_scene_read_vertices(luxfer_scene *scene,
  */
 luxfer_status luxfer_scene_read_triangles(luxfer_scene *scene,
                                           uint32_t index,
-                                          size_t capacity,
-                                          uint32_t *indices);
+                                          uint32_t *indices,
+                                          size_t capacity);
 
 /* ====================================================================================================================
  * Candidates for the ceiling
@@ -1005,8 +1007,6 @@ typedef struct luxfer_candidate {
     luxfer_candidate_kind kind;
     /** Index of the object's first mesh in the scene, or index of the material. */
     uint32_t index;
-    /** Number of triangles whose area is not 0. */
-    uint32_t triangles;
     /** Area of all triangles in m². */
     float area;
     /**
@@ -1034,8 +1034,8 @@ typedef struct luxfer_candidate {
      * a word for a ceiling, such as "ceiling" or "Decke", raises the score to (1 + s) / 2, unless level_area is 0.
      */
     float score;
-    /** Reserved; always 0. */
-    uint32_t reserved;
+    /** Number of triangles whose area is not 0. */
+    uint64_t triangles;
     /** Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates. */
     const char *name;
     /**

@@ -122,14 +122,14 @@ def scenes() -> Scenario:
     s.call("scene_get_requirements_text", scene, ROOM, 300, ROOM)
     s.call("scene_get_mesh", scene, 0, *report("mesh_info"))
     s.call("scene_get_mesh_name", scene, 0, ROOM, 20, ROOM)
-    s.call("scene_read_vertices", scene, 0, 0, 4, ROOM)
-    s.call("scene_read_triangles", scene, 0, 2, ROOM)
+    s.call("scene_read_vertices", scene, 0, 0, ROOM, 4)
+    s.call("scene_read_triangles", scene, 0, ROOM, 2)
     coloured = struct(
         "mesh_params", name="Coloured", vertex_count=3, positions=array("float", 0, 0, 0, 1, 0, 0, 0, 1, 0), triangle_count=1,
         indices=array("uint32_t", 0, 1, 2), colours=array("float", *[0.5] * 12),
     )  # fmt: skip
     s.call("scene_add_mesh", scene, coloured, None)
-    s.call("scene_read_vertices", scene, 2, 4, 3, ROOM)
+    s.call("scene_read_vertices", scene, 2, 4, ROOM, 3)
     s.call("scene_place_emission", scene, "Ceiling", image, 9.0, 9.0, 9.0, ROOM, ROOM)
     s.make("demo_create_scene", s.context, 2)
     return s

@@ -306,12 +306,12 @@ class Scene(Handle):
             "colours": (_abi.LUXFER_VERTEX_COLOUR, 4, info.has_colours),
         }
         out: dict[str, NDArray[Any]] = {"indices": np.empty((info.triangle_count, 3), np.uint32)}
-        self._call("read_triangles", index, info.triangle_count, _arrays.pointer(out["indices"], ctypes.c_uint32))
+        self._call("read_triangles", index, _arrays.pointer(out["indices"], ctypes.c_uint32), info.triangle_count)
         for name, (attribute, numbers, exists) in attributes.items():
             if exists:
                 out[name] = np.empty((info.vertex_count, numbers), np.float32)
                 pointer = _arrays.pointer(out[name], ctypes.c_float)
-                self._call("read_vertices", index, attribute, info.vertex_count, pointer)
+                self._call("read_vertices", index, attribute, pointer, info.vertex_count)
         return out
 
     # -- questions

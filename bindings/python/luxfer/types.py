@@ -1409,8 +1409,6 @@ class Candidate:
     """CandidateKind."""
     index: int
     """Index of the object's first mesh in the scene, or index of the material."""
-    triangles: int
-    """Number of triangles whose area is not 0."""
     area: float
     """Area of all triangles in m²."""
     level_area: float
@@ -1431,6 +1429,8 @@ class Candidate:
     floor area of the scene's bounding box in m², and h = (height - lowest y of the scene) / (height of the
     scene). A name with a word for a ceiling, such as "ceiling" or "Decke", raises the score to (1 + s) / 2,
     unless level_area is 0."""
+    triangles: int
+    """Number of triangles whose area is not 0."""
     name: str
     """Name of the object or material, in zero-terminated UTF-8. The string lives as long as the
     luxfer_candidates."""
