@@ -103,12 +103,22 @@ fn rays_hit_what_they_should_after_every_change() {
     let none = luxfer_hit { t: -1.0, mesh: 7, triangle: 7, u: -1.0, v: -1.0 };
     unsafe {
         let mut hits = [none; 5];
-        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 5, hits.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 5, 0, hits.as_mut_ptr(), 0), LUXFER_OK);
         assert_eq!(hits.map(|h| h.mesh), [1, LUXFER_NONE, LUXFER_NONE, LUXFER_NONE, 0]);
         assert_eq!(hits.map(|h| h.t), [0.95, f32::INFINITY, f32::INFINITY, f32::INFINITY, 1.0]);
         // The ray hits the lamp at (0.6, 0.7) of its square: in the second triangle, whose corners are 0, 2 and 3.
         assert_eq!(hits[0].triangle, 1);
         assert!((hits[0].u - 0.6).abs() < 1e-5 && (hits[0].v - 0.1).abs() < 1e-5, "{} {}", hits[0].u, hits[0].v);
+
+        // A ray and its hit may be fields of one struct.
+        let mut pairs = rays.map(|ray| (ray, none));
+        let (first, stride) = (pairs.as_mut_ptr(), size_of_val(&pairs[0]));
+        let (ray, hit) = (&raw const (*first).0, &raw mut (*first).1);
+        assert_eq!(luxfer_scene_intersect(scene, ray, 5, stride, hit, stride), LUXFER_OK);
+        assert_eq!(pairs.map(|pair| pair.1.t), hits.map(|hit| hit.t));
+        assert_eq!(pairs.map(|pair| pair.0.direction[1]), rays.map(|ray| ray.direction[1]));
+        assert_eq!(luxfer_scene_intersect(scene, ray, 5, 24, hit, stride), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_intersect(scene, ray, 5, stride, hit, 16), LUXFER_INVALID_ARGUMENT);
 
         // Change the scene: add a triangle that covers the lamp.
         let positions = [[-1.0f32, 1.5, -1.0], [1.0, 1.5, -1.0], [0.0, 1.5, 2.0]];
@@ -117,13 +127,13 @@ fn rays_hit_what_they_should_after_every_change() {
         (mesh.vertex_count, mesh.positions) = (3, positions.as_ptr().cast());
         (mesh.triangle_count, mesh.indices) = (1, [0u32, 1, 2].as_ptr().cast());
         assert_eq!(luxfer_scene_add_mesh(scene, &mesh, null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, hits.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, 0, hits.as_mut_ptr(), 0), LUXFER_OK);
         assert_eq!((hits[0].mesh, hits[0].t), (2, 0.75));
 
-        assert_eq!(luxfer_scene_intersect(scene, null(), 0, null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_scene_intersect(scene, null(), 1, hits.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, null_mut()), LUXFER_INVALID_ARGUMENT);
-        let too_many = luxfer_scene_intersect(scene, rays.as_ptr(), usize::MAX / 2, hits.as_mut_ptr());
+        assert_eq!(luxfer_scene_intersect(scene, null(), 0, 0, null_mut(), 0), LUXFER_OK);
+        assert_eq!(luxfer_scene_intersect(scene, null(), 1, 0, hits.as_mut_ptr(), 0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, 0, null_mut(), 0), LUXFER_INVALID_ARGUMENT);
+        let too_many = luxfer_scene_intersect(scene, rays.as_ptr(), usize::MAX / 2, 0, hits.as_mut_ptr(), 0);
         assert_eq!(too_many, LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);

@@ -90,7 +90,7 @@ pub fn scene(data: &[u8]) {
     });
     unsafe {
         let mut hits: [luxfer_hit; 2] = std::mem::zeroed();
-        check("luxfer_scene_intersect", luxfer_scene_intersect(scene, rays.as_ptr(), 2, hits.as_mut_ptr()));
+        check("luxfer_scene_intersect", luxfer_scene_intersect(scene, rays.as_ptr(), 2, 0, hits.as_mut_ptr(), 0));
         let mut needs: luxfer_requirements = std::mem::zeroed();
         check("luxfer_scene_get_requirements", luxfer_scene_get_requirements(scene, 0.01, &mut needs, size_of_val(&needs)));
         check("luxfer_scene_export_memory", luxfer_scene_export_memory(scene, Some(take), null_mut()));

@@ -832,17 +832,20 @@ typedef struct luxfer_observer_glare {
  * Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
  * samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
  * 4096 paths suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to
- * count times samples. The first call after a scene is loaded or changed also prepares the scene for tracing. Any
- * thread.
+ * count times samples. observer_stride and rating_stride are the distances between elements in bytes; 0:
+ * sizeof(luxfer_observer), sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also
+ * prepares the scene for tracing. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
  * straight up or down, or is inside a luminaire (the message names the observer). In these cases no rating is written.
  */
 luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
                                      const luxfer_observer *observers,
                                      size_t count,
+                                     size_t observer_stride,
                                      uint32_t samples,
                                      uint64_t seed,
-                                     luxfer_observer_glare *ratings);
+                                     luxfer_observer_glare *ratings,
+                                     size_t rating_stride);
 
 /* ====================================================================================================================
  * False colour

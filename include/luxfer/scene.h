@@ -793,16 +793,20 @@ typedef struct luxfer_hit {
 } luxfer_hit;
 
 /**
- * Finds the nearest hits of count rays; the array hits receives count elements. All surfaces count as opaque and
- * two-sided. Of hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays
- * whose origin or direction is not finite, or whose direction is 0, hit nothing. The first call after a scene is
- * loaded or changed prepares the scene for tracing, which takes longer. Any thread.
- * LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the part that is not valid.
+ * Finds the nearest hits of count rays; the array hits receives count elements. ray_stride and hit_stride are the
+ * distances between elements in bytes; 0: sizeof(luxfer_ray), sizeof(luxfer_hit). Rays and hits may be fields of one
+ * struct. All surfaces count as opaque and two-sided. Of hits at equal distance, the hit with the lower index of mesh,
+ * then of triangle, is returned. Rays whose origin or direction is not finite, or whose direction is 0, hit nothing.
+ * The first call after a scene is loaded or changed prepares the scene for tracing, which takes longer. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a stride is too small or the scene is not valid: the message names the part that is not
+ * valid.
  */
 luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
                                      const luxfer_ray *rays,
                                      size_t count,
-                                     luxfer_hit *hits);
+                                     size_t ray_stride,
+                                     luxfer_hit *hits,
+                                     size_t hit_stride);
 
 /* ====================================================================================================================
  * Scene requirements

@@ -216,7 +216,7 @@ inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span
                                                         std::uint32_t samples = 4096, std::uint64_t seed = 1) {
     std::vector<luxfer_observer_glare> ratings(observers.size());
     const luxfer_status status =
-        luxfer_scene_get_glare(scene.get(), observers.data(), observers.size(), samples, seed, ratings.data());
+        luxfer_scene_get_glare(scene.get(), observers.data(), observers.size(), 0, samples, seed, ratings.data(), 0);
     return detail::finish(scene.context().get(), status, std::move(ratings));
 }
 

@@ -328,7 +328,7 @@ class Scene(Handle):
         rays[:, :3], rays[:, 3:6], rays[:, 6] = start, towards, t_max
         hits = np.empty(len(rays), HIT)
         pointer = _arrays.pointer(rays, _abi.luxfer_ray)
-        self._call("intersect", pointer, len(rays), _arrays.pointer(hits, _abi.luxfer_hit))
+        self._call("intersect", pointer, len(rays), 0, _arrays.pointer(hits, _abi.luxfer_hit), 0)
         return hits
 
     def glare(
@@ -347,7 +347,7 @@ class Scene(Handle):
         ratings = np.empty(len(observers), GLARE)
         pointer = _arrays.pointer(observers, _abi.luxfer_observer)
         out = _arrays.pointer(ratings, _abi.luxfer_observer_glare)
-        self._call("get_glare", pointer, len(observers), samples, seed, out)
+        self._call("get_glare", pointer, len(observers), 0, samples, seed, out, 0)
         return ratings
 
     def requirements(self, error: float = 0.01) -> Requirements:
