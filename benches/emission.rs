@@ -214,7 +214,7 @@ fn patterns() {
     let methods: [(&str, Params); 3] = [
         ("default", Params::default()),
         ("as in the paper", Params { min_regularity: 1.0, whole_lamps: false, ..Params::default() }),
-        ("quilting", Params { min_regularity: 1.0, whole_lamps: false, metadata_weight: 0.0, ..Params::default() }),
+        ("quilting", Params { min_regularity: 1.0, whole_lamps: false, guide_weight: 0.0, ..Params::default() }),
     ];
     let mut table = Table::new(["design", "method"].into_iter().chain(STATISTICS).chain(["broken", "stated error %"]));
     let (mut ours, mut behind) = (Score::default(), 0);

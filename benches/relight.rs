@@ -296,7 +296,7 @@ fn map(case: &Case) {
         "\nimportance, 64 x 64 cells: {seconds:.3} s; a texture of 512 x 512: {:.2} ms, known to {:.2} %, cells +- {:.2} %",
         look * 1e3,
         100.0 * response.light.half_width().y / response.light.mean.y,
-        100.0 * (response.band_error.y / response.light.mean.y).abs()
+        100.0 * (response.resolution_difference.y / response.light.mean.y).abs()
     );
     let (search, best) = time(Clock::Wall, || {
         map.place(&texture.image, &PlacementParams::default(), monitor.job()).expect("a placement")

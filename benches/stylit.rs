@@ -427,7 +427,7 @@ fn baselines(pair: &Pair, pool: &Pool) {
 fn plain_em(stylise: &impl Fn(&str, &Params) -> (f64, PathBuf), seconds_of_ours: f64) -> [Outcome; 2] {
     let plain = Params {
         mode: Mode::Nearest,
-        sweeps: 3,
+        search_iterations: 3,
         vote: VoteMode::Plain,
         final_vote: VoteMode::Plain,
         ..Params::default()
@@ -508,10 +508,10 @@ fn methods(pair: &Pair, pool: &Pool) {
         ("occurrence, lambda 0.01", occurrence(0.01)),
         ("occurrence, lambda 0.1 (Kaspar 2015)", occurrence(0.1)),
         ("occurrence, lambda 1", occurrence(1.0)),
-        ("nearest (Wexler 2007)", Params { sweeps: 3, ..of(Mode::Nearest) }),
+        ("nearest (Wexler 2007)", Params { search_iterations: 3, ..of(Mode::Nearest) }),
         (
             "nearest, mean",
-            Params { sweeps: 3, final_vote: VoteMode::Plain, vote: VoteMode::Plain, ..of(Mode::Nearest) },
+            Params { search_iterations: 3, final_vote: VoteMode::Plain, vote: VoteMode::Plain, ..of(Mode::Nearest) },
         ),
         ("greedy (Hertzmann 2001)", of(Mode::Greedy)),
         ("error budget by table", Params { finder: Finder::KdTree, ..Params::default() }),
@@ -538,7 +538,7 @@ fn knobs(pair: &Pair, pool: &Pool) {
     knob("iterations", &[1, 3, 6, 9], |p, v| p.iterations = v);
     knob("coarse iterations", &[1, 6, 12, 24, 48], |p, v| p.coarse_iterations = v);
     knob("finest iterations", &[1, 2, 4], |p, v| p.finest_iterations = v);
-    knob("sweeps", &[1, 2, 4], |p, v| p.sweeps = v);
+    knob("search iterations", &[1, 2, 4], |p, v| p.search_iterations = v);
     knob("guide weight", &[1, 2, 4, 8], |p, v| p.guide_weight = v as f32);
     knob("coarse guides", &[1, 2, 4, 8], |p, v| p.coarse_guides = v as f32);
     knob("passes", &[2, 3, 6, 12], |p, v| p.passes = v);

@@ -497,29 +497,29 @@ fn a_stage_copies_strokes_of_its_size() {
     };
     unsafe {
         assert_eq!(luxfer_segment_set_features(segment, small), LUXFER_OK);
-        assert_eq!(luxfer_segment_set_strokes(segment, transposed, LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, transposed), LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("strokes are for 6 x 8"), "{}", message(context));
-        assert_eq!(luxfer_segment_set_strokes(segment, strokes, 2), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_segment_set_strokes(segment, small.cast(), LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_segment_set_strokes(segment, 2, strokes), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, small.cast()), LUXFER_INVALID_ARGUMENT);
 
         // The stage has a copy of the strokes, so later changes by the caller do not reach it.
         let points = [1.0f32, 1.0, 6.0, 1.0];
         assert_eq!(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, points.as_ptr(), 2, 1.0, 1), LUXFER_OK);
         assert_eq!(luxfer_strokes_add_text(strokes, c"not-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
-        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
         assert_eq!(luxfer_strokes_clear(strokes), LUXFER_OK);
         assert_eq!(start(), LUXFER_OK);
-        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
         assert_eq!(start(), LUXFER_DEGENERATE);
 
         // Setting a photo of another size, or NULL strokes, removes the stage's strokes.
         assert_eq!(luxfer_strokes_add_text(strokes, c"plane 1 1 1 6 1\nnot-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
         for is_larger in [true, false] {
             assert_eq!(luxfer_segment_set_features(segment, small), LUXFER_OK);
-            assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+            assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
             let status = match is_larger {
                 true => luxfer_segment_set_features(segment, large),
-                false => luxfer_segment_set_strokes(segment, null_mut(), LUXFER_PHASE_PLANE),
+                false => luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, null_mut()),
             };
             assert_eq!(status, LUXFER_OK);
             assert_eq!(start(), LUXFER_DEGENERATE);

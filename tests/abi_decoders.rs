@@ -301,7 +301,10 @@ fn quick_calls(context: *mut luxfer_context) {
     let mut sheet = unsafe { std::mem::zeroed::<luxfer_sheet_params>() };
     let mut file = Vec::<u8>::new();
     unsafe {
-        assert_eq!(luxfer_scene_intersect(scene, vec![ray; 10_000].as_ptr(), 10_000, hits.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(
+            luxfer_scene_intersect(scene, vec![ray; 10_000].as_ptr(), 10_000, 0, hits.as_mut_ptr(), 0),
+            LUXFER_OK
+        );
         assert_eq!(luxfer_scene_get_requirements(scene, 0.1, &mut needs, size_of_val(&needs)), LUXFER_OK);
         let made = |make: &dyn Fn(*mut *mut luxfer_image) -> luxfer_status| {
             assert_eq!(luxfer_release(host::made(make).cast()), LUXFER_OK);

@@ -61,7 +61,7 @@ fn start_render(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut
 fn trace(scene: *mut luxfer_scene) -> (luxfer_status, f32) {
     let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
     let mut hit = luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 };
-    (unsafe { luxfer_scene_intersect(scene, &ray, 1, &mut hit) }, hit.t)
+    (unsafe { luxfer_scene_intersect(scene, &ray, 1, 0, &mut hit, 0) }, hit.t)
 }
 
 /// Objects of one context, and a running job.

@@ -39,7 +39,7 @@ fn lit(context: *mut luxfer_context, shape: luxfer_luminaire_shape) -> *mut luxf
 fn rate(scene: *mut luxfer_scene, observers: &[luxfer_observer]) -> (luxfer_status, Vec<luxfer_observer_glare>) {
     let mut ratings = vec![unsafe { std::mem::zeroed::<luxfer_observer_glare>() }; observers.len()];
     let (count, out) = (observers.len(), ratings.as_mut_ptr());
-    (unsafe { luxfer_scene_get_glare(scene, observers.as_ptr(), count, 256, 1, out) }, ratings)
+    (unsafe { luxfer_scene_get_glare(scene, observers.as_ptr(), count, 0, 256, 1, out, 0) }, ratings)
 }
 
 /// Renders a small picture of a scene. Returns the render and its finished job.
@@ -129,7 +129,7 @@ fn the_scene_rates_its_luminaires() {
     assert_eq!(ratings[0].ugr, 0.0);
     assert_eq!(rate(scene, &[]).0, LUXFER_OK);
     unsafe {
-        let status = luxfer_scene_get_glare(scene, &eye, 1, 256, 1, null_mut());
+        let status = luxfer_scene_get_glare(scene, &eye, 1, 0, 256, 1, null_mut(), 0);
         assert_eq!(status, LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);

@@ -506,7 +506,7 @@ layouts! {
     luxfer_photo_metadata: struct_size orientation focal focal_error f_number exposure_time iso white_luminance
         white_luminance_low white_luminance_high colour reserved;
     luxfer_scene_counts: struct_size meshes materials textures lights cameras triangles;
-    luxfer_surface: struct_size triangles origin u_axis v_axis normal size area sloped_area;
+    luxfer_surface: struct_size reserved triangles origin u_axis v_axis normal size area sloped_area;
     luxfer_scene_load_params: struct_size allow_external_files unit keep_origin luminaire_shape;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
         alpha alpha_mode alpha_cutoff normal_scale;
@@ -532,7 +532,7 @@ layouts! {
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence
         distortion distortion_error squareness squareness_errors;
-    luxfer_emission_params: struct_size width height block scale working_side metadata_weight seed min_regularity
+    luxfer_emission_params: struct_size width height block scale working_side guide_weight seed min_regularity
         whole_lamps offset clip_level even_lamps tileable centred candidates reserved law clean_lamps max_magnification;
     luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error law runner_up
         law_score margin;
@@ -556,10 +556,10 @@ layouts! {
         background_lux;
     luxfer_lamps_response: struct_size reserved mean half_width;
     luxfer_importance_params: struct_size width height quantity paths target_error time_budget_ms reserved seed;
-    luxfer_importance_report: struct_size paths response half_width band_error;
+    luxfer_importance_report: struct_size paths response half_width resolution_difference;
     luxfer_placement_params: struct_size aim radiance starts min_offset max_offset min_scale max_scale
         min_rotation max_rotation seed;
-    luxfer_placement: struct_size reserved placement offset scale rotation response half_width band_error;
+    luxfer_placement: struct_size reserved placement offset scale rotation response half_width resolution_difference;
     luxfer_pendants_params: struct_size alike level refine known reserved known_length ceiling suspension_error focal
         focal_error axes_error principal axes;
     luxfer_pendant: struct_size profile_count kind doubts probability aspect diameter height drop centre residual cut
@@ -576,18 +576,18 @@ layouts! {
     luxfer_transfer_report: struct_size fixtures seconds view_error depth_confidence plane_error lights_error
         unwarp_error emission_error relight_error render_error texel_size target reserved plane_distance plane_distance_error proposed_white
         proposed_white_low proposed_white_high preview_error;
-    luxfer_candidate: struct_size kind index triangles area level_area height low high normal score reserved name reason;
+    luxfer_candidate: struct_size kind index area level_area height low high normal score triangles name reason;
     luxfer_warning: struct_size code stage has_place severity limit place message advice;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;
     luxfer_sheet_report: struct_size marks residual error to_photo;
     luxfer_guides_params: struct_size width height samples camera smooth seed;
-    luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish sweeps
+    luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish search_iterations
         coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
         seed coarse_guides coarse_iterations occurrence reserved;
     luxfer_stylize_report: struct_size is_complete levels halvings patch max_uses energy used entropy guide_error
-        broken_source broken_target whole;
+        broken_source broken_target unblended_share;
     luxfer_stylize_round: struct_size passes energy;
     luxfer_stylize_pass: struct_size reserved knee coverage new_matches;
     luxfer_fixture: struct_size position normal axis radiance kind size area flux cct duv;

@@ -51,7 +51,7 @@ fn run(
 unsafe fn rate_for_minutes(scene: *mut luxfer_scene) -> luxfer_status {
     let observer = luxfer_observer { position: [1.0, 1.0, 1.0], direction: [1.0, 0.0, 0.0] };
     let mut rating = unsafe { std::mem::zeroed::<luxfer_observer_glare>() };
-    unsafe { luxfer_scene_get_glare(scene, &observer, 1, 1 << 24, 1, &mut rating) }
+    unsafe { luxfer_scene_get_glare(scene, &observer, 1, 0, 1 << 24, 1, &mut rating, 0) }
 }
 
 unsafe extern "C" fn rate(user: *mut c_void) -> luxfer_status {
@@ -178,7 +178,7 @@ fn progress_is_that_of_the_calls() {
         let observer = luxfer_observer { position: [1.0, 1.0, 1.0], direction: [1.0, 0.0, 0.0] };
         let observers = [observer; 64];
         let mut ratings = [unsafe { std::mem::zeroed::<luxfer_observer_glare>() }; 64];
-        unsafe { luxfer_scene_get_glare(scene, observers.as_ptr(), 64, 1 << 14, 1, ratings.as_mut_ptr()) }
+        unsafe { luxfer_scene_get_glare(scene, observers.as_ptr(), 64, 0, 1 << 14, 1, ratings.as_mut_ptr(), 0) }
     }
     let context = context(2);
     let scene = scene(context);

@@ -43,9 +43,9 @@ fn find<const N: usize>(
     context: *mut luxfer_context,
     mask: *mut luxfer_image,
     params: &luxfer_pendants_params,
-) -> Result<([luxfer_pendant; N], u32), luxfer_status> {
+) -> Result<([luxfer_pendant; N], usize), luxfer_status> {
     let mut lamps = [unsafe { std::mem::zeroed::<luxfer_pendant>() }; N];
-    let (out, mut count, capacity) = (lamps.as_mut_ptr(), 99, N as u32);
+    let (out, mut count, capacity) = (lamps.as_mut_ptr(), 99, N);
     let none = null_mut();
     let status =
         unsafe { luxfer_pendants_find(context, mask, mask, none, null(), 0, params, out, SIZE, capacity, &mut count) };
@@ -257,7 +257,7 @@ fn lamps_are_added_to_a_scene() {
         assert_eq!(luxfer_scene_get_mesh(scene, mesh + 1, &mut info, size), LUXFER_OK);
         let mut positions = vec![0f32; 3 * info.vertex_count];
         let (first, capacity) = (positions.as_mut_ptr(), info.vertex_count);
-        let status = luxfer_scene_read_vertices(scene, mesh + 1, LUXFER_VERTEX_POSITION, capacity, first);
+        let status = luxfer_scene_read_vertices(scene, mesh + 1, LUXFER_VERTEX_POSITION, first, capacity);
         assert_eq!(status, LUXFER_OK, "{}", message(context));
         let top = positions.iter().skip(1).step_by(3).fold(f32::MIN, |top, y| top.max(*y));
         assert!((top - 1.5).abs() < 1e-4, "{top}");

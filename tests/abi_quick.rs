@@ -99,7 +99,7 @@ fn trace(scene: *mut luxfer_scene, count: usize) -> f32 {
     let ray = luxfer_ray { origin: [1.0, 0.0, 1.0], direction: [0.0, 1.0, 0.0], t_max: f32::INFINITY };
     let mut hits = vec![luxfer_hit { t: 0.0, mesh: 0, triangle: 0, u: 0.0, v: 0.0 }; count];
     let rays = vec![ray; count];
-    assert_eq!(unsafe { luxfer_scene_intersect(scene, rays.as_ptr(), count, hits.as_mut_ptr()) }, LUXFER_OK);
+    assert_eq!(unsafe { luxfer_scene_intersect(scene, rays.as_ptr(), count, 0, hits.as_mut_ptr(), 0) }, LUXFER_OK);
     assert!(hits.iter().all(|hit| hit.t == hits[0].t));
     hits[0].t
 }

@@ -102,7 +102,7 @@ fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
     assert_eq!(warnings(scene).iter().map(|w| w.0).collect::<Vec<_>>(), [LUXFER_WARNING_NOT_RENDERED]);
     let (mut positions, mut text) = ([0.0f32; 9], [0 as c_char; 4096]);
     unsafe {
-        let status = luxfer_scene_read_vertices(scene, 0, LUXFER_VERTEX_POSITION, 3, positions.as_mut_ptr());
+        let status = luxfer_scene_read_vertices(scene, 0, LUXFER_VERTEX_POSITION, positions.as_mut_ptr(), 3);
         assert_eq!((status, positions[3]), (LUXFER_OK, 2.7));
         let status = luxfer_scene_get_requirements_text(scene, text.as_mut_ptr(), text.len(), null_mut());
         assert_eq!(status, LUXFER_OK, "{}", message(context));
@@ -175,7 +175,7 @@ fn a_scene_on_a_national_grid_has_an_origin_of_its_own() {
             assert_eq!(luxfer_scene_get_origin(scene, x, y, z), LUXFER_OK);
             assert_eq!(luxfer_scene_get_origin(scene, null_mut(), y, z), LUXFER_INVALID_ARGUMENT);
             assert_eq!(
-                luxfer_scene_read_vertices(scene, 0, LUXFER_VERTEX_POSITION, 3, positions.as_mut_ptr()),
+                luxfer_scene_read_vertices(scene, 0, LUXFER_VERTEX_POSITION, positions.as_mut_ptr(), 3),
                 LUXFER_OK
             );
         }

@@ -21,19 +21,19 @@ fn a_mesh_comes_back_as_it_was_described() {
         assert_eq!((info.material, info.vertex_count, info.triangle_count), (1, 4, 2));
         assert_eq!((info.has_normals, info.uv_sets), (0, 0));
         let (mut positions, mut indices) = ([0.0f32; 12], [0u32; 6]);
-        let read = |attribute, capacity, values| luxfer_scene_read_vertices(scene, 1, attribute, capacity, values);
+        let read = |attribute, capacity, values| luxfer_scene_read_vertices(scene, 1, attribute, values, capacity);
         assert_eq!(read(LUXFER_VERTEX_POSITION, 4, positions.as_mut_ptr()), LUXFER_OK);
-        assert_eq!(luxfer_scene_read_triangles(scene, 1, 2, indices.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, indices.as_mut_ptr(), 2), LUXFER_OK);
         assert_eq!(positions, [-0.5, 1.9, -0.5, 0.5, 1.9, -0.5, 0.5, 1.9, 0.5, -0.5, 1.9, 0.5]);
         assert_eq!(indices, [0, 1, 2, 0, 2, 3]);
         // Nothing is written if the array is too small.
         let (mut positions, mut indices) = ([7.0f32; 12], [7u32; 6]);
-        assert_eq!(luxfer_scene_read_triangles(scene, 1, 1, indices.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, indices.as_mut_ptr(), 1), LUXFER_INVALID_ARGUMENT);
         assert!(message(context).contains("room for 1 triangles; 2"), "{}", message(context));
         assert_eq!(read(LUXFER_VERTEX_POSITION, 3, positions.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
         assert_eq!((positions, indices), ([7.0; 12], [7; 6]));
         assert_eq!(read(LUXFER_VERTEX_POSITION, 4, null_mut()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_read_triangles(scene, 1, 2, null_mut()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_read_triangles(scene, 1, null_mut(), 2), LUXFER_INVALID_ARGUMENT);
         for lacking in [LUXFER_VERTEX_NORMAL, LUXFER_VERTEX_UV_0, LUXFER_VERTEX_UV_1, LUXFER_VERTEX_COLOUR] {
             assert_eq!(read(lacking, 4, positions.as_mut_ptr()), LUXFER_NOT_FOUND);
         }
@@ -103,12 +103,22 @@ fn rays_hit_what_they_should_after_every_change() {
     let none = luxfer_hit { t: -1.0, mesh: 7, triangle: 7, u: -1.0, v: -1.0 };
     unsafe {
         let mut hits = [none; 5];
-        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 5, hits.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 5, 0, hits.as_mut_ptr(), 0), LUXFER_OK);
         assert_eq!(hits.map(|h| h.mesh), [1, LUXFER_NONE, LUXFER_NONE, LUXFER_NONE, 0]);
         assert_eq!(hits.map(|h| h.t), [0.95, f32::INFINITY, f32::INFINITY, f32::INFINITY, 1.0]);
         // The ray hits the lamp at (0.6, 0.7) of its square: in the second triangle, whose corners are 0, 2 and 3.
         assert_eq!(hits[0].triangle, 1);
         assert!((hits[0].u - 0.6).abs() < 1e-5 && (hits[0].v - 0.1).abs() < 1e-5, "{} {}", hits[0].u, hits[0].v);
+
+        // A ray and its hit may be fields of one struct.
+        let mut pairs = rays.map(|ray| (ray, none));
+        let (first, stride) = (pairs.as_mut_ptr(), size_of_val(&pairs[0]));
+        let (ray, hit) = (&raw const (*first).0, &raw mut (*first).1);
+        assert_eq!(luxfer_scene_intersect(scene, ray, 5, stride, hit, stride), LUXFER_OK);
+        assert_eq!(pairs.map(|pair| pair.1.t), hits.map(|hit| hit.t));
+        assert_eq!(pairs.map(|pair| pair.0.direction[1]), rays.map(|ray| ray.direction[1]));
+        assert_eq!(luxfer_scene_intersect(scene, ray, 5, 24, hit, stride), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_intersect(scene, ray, 5, stride, hit, 16), LUXFER_INVALID_ARGUMENT);
 
         // Change the scene: add a triangle that covers the lamp.
         let positions = [[-1.0f32, 1.5, -1.0], [1.0, 1.5, -1.0], [0.0, 1.5, 2.0]];
@@ -117,13 +127,13 @@ fn rays_hit_what_they_should_after_every_change() {
         (mesh.vertex_count, mesh.positions) = (3, positions.as_ptr().cast());
         (mesh.triangle_count, mesh.indices) = (1, [0u32, 1, 2].as_ptr().cast());
         assert_eq!(luxfer_scene_add_mesh(scene, &mesh, null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, hits.as_mut_ptr()), LUXFER_OK);
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, 0, hits.as_mut_ptr(), 0), LUXFER_OK);
         assert_eq!((hits[0].mesh, hits[0].t), (2, 0.75));
 
-        assert_eq!(luxfer_scene_intersect(scene, null(), 0, null_mut()), LUXFER_OK);
-        assert_eq!(luxfer_scene_intersect(scene, null(), 1, hits.as_mut_ptr()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, null_mut()), LUXFER_INVALID_ARGUMENT);
-        let too_many = luxfer_scene_intersect(scene, rays.as_ptr(), usize::MAX / 2, hits.as_mut_ptr());
+        assert_eq!(luxfer_scene_intersect(scene, null(), 0, 0, null_mut(), 0), LUXFER_OK);
+        assert_eq!(luxfer_scene_intersect(scene, null(), 1, 0, hits.as_mut_ptr(), 0), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_intersect(scene, rays.as_ptr(), 1, 0, null_mut(), 0), LUXFER_INVALID_ARGUMENT);
+        let too_many = luxfer_scene_intersect(scene, rays.as_ptr(), usize::MAX / 2, 0, hits.as_mut_ptr(), 0);
         assert_eq!(too_many, LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);

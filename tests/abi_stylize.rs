@@ -149,7 +149,7 @@ fn a_target_is_stylised_and_reported_level_by_level() {
         let all = report(stylize);
         assert!(all.is_complete == 1 && all.levels == 1 && all.halvings == 0 && all.patch == 5 && all.max_uses > 0);
         assert!(all.energy > 0.0 && all.used > 0.1 && all.entropy > 5.0 && all.guide_error < 0.3);
-        assert!(all.whole > 0.0 && all.whole <= 1.0);
+        assert!(all.unblended_share > 0.0 && all.unblended_share <= 1.0);
         check_rounds(stylize, all.energy);
 
         // The whole pixels are copied from the artwork, and the image `sources` states from which place.
@@ -164,20 +164,20 @@ fn a_target_is_stylised_and_reported_level_by_level() {
             let count = picture.chunks_exact(3).filter(|p| palette.contains(&colour(p))).count();
             count as f64 / (picture.len() / 3) as f64
         };
-        assert!(copied(&picture) >= all.whole, "{} {}", copied(&picture), all.whole);
+        assert!(copied(&picture) >= all.unblended_share, "{} {}", copied(&picture), all.unblended_share);
         assert!(sources.chunks_exact(2).all(|s| s[0] > 0.0 && s[0] < 60.0 && s[1] > 0.0 && s[1] < 44.0));
 
         // The vote for most makes no blends.
-        let most = luxfer_stylize_params { final_vote: LUXFER_STYLIZE_VOTE_MOST, ..params() };
+        let most = luxfer_stylize_params { final_vote: LUXFER_STYLIZE_VOTE_MAJORITY, ..params() };
         assert_eq!(run(stylize, &most), LUXFER_OK);
         let unblended = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
-        assert_eq!((report(stylize).whole, copied(&pixels(unblended).2)), (1.0, 1.0));
+        assert_eq!((report(stylize).unblended_share, copied(&pixels(unblended).2)), (1.0, 1.0));
         assert_eq!(luxfer_release(unblended.cast()), LUXFER_OK);
 
         // The preview preset makes a picture of half the size.
         let mut preview = params();
-        assert_eq!(luxfer_stylize_params_preset(&mut preview, LUXFER_STYLIZE_PREVIEW, 104), LUXFER_OK);
-        assert_eq!(luxfer_stylize_params_preset(&mut preview, 4, 104), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_stylize_get_preset(&mut preview, 104, LUXFER_STYLIZE_PREVIEW), LUXFER_OK);
+        assert_eq!(luxfer_stylize_get_preset(&mut preview, 104, 4), LUXFER_INVALID_ARGUMENT);
         assert_eq!(run(stylize, &preview), LUXFER_OK);
         let half = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         assert_eq!(pixels(half).0, 35);

@@ -23,7 +23,7 @@ fn doubtful(context: *mut luxfer_context) -> *mut luxfer_segment {
             let status = luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, points.as_ptr(), 2, 2.0, positive);
             assert_eq!(status, LUXFER_OK);
         }
-        assert_eq!(luxfer_segment_set_strokes(segment, strokes, LUXFER_PHASE_PLANE), LUXFER_OK);
+        assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
         assert_eq!(luxfer_release(strokes.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(features.cast()), LUXFER_OK);
     }

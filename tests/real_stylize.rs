@@ -67,7 +67,7 @@ fn the_budget_beats_plain_em_on_usage_and_texture_at_like_energy() {
         &pair,
         &Params {
             mode: Mode::Nearest,
-            sweeps: 3,
+            search_iterations: 3,
             vote: VoteMode::Plain,
             final_vote: VoteMode::Plain,
             ..Params::default()
@@ -96,5 +96,5 @@ fn the_exemplars_own_guides_give_the_artwork_back() {
     let output = stylise(&pair, &Params::default());
     assert!(output.image == pair.artwork);
     assert_eq!(output.report.usage.max_uses, 1);
-    assert_eq!(output.report.whole, 1.0);
+    assert_eq!(output.report.unblended_share, 1.0);
 }

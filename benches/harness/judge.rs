@@ -4,7 +4,7 @@
 use luxfer::image::Image;
 use luxfer::image::colour::linear_to_srgb;
 use luxfer::job::Monitor;
-use luxfer::patch::{Domain, Field, Kernel, QuantisedImage, Quantiser, Search, Sweep};
+use luxfer::patch::{Domain, Field, Kernel, QuantisedImage, Quantiser, Search, SearchIteration};
 use luxfer::rng::{Rng, hash};
 use std::collections::HashSet;
 
@@ -74,7 +74,7 @@ pub fn energy(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> f6
     let mut field = Field::new(query.width + 1 - PATCH, query.height + 1 - PATCH).expect("memory");
     for index in 0..10 {
         search
-            .sweep(&mut field, Sweep { index, radius: 256, initial_samples: 8 }, monitor.job(), |_| true)
+            .iterate(&mut field, SearchIteration { index, radius: 256, initial_samples: 8 }, monitor.job(), |_| true)
             .expect("nobody cancels");
     }
     let unit = Quantiser::unit(&weights, PATCH).powi(2) * (PATCH * PATCH) as f64;
@@ -118,7 +118,9 @@ fn coherence(picture: &Image, artwork: &Image) -> f64 {
     // Start with good matches, so that most comparisons of the exhaustive search stop early.
     for index in 0..4 {
         search
-            .sweep(&mut field, Sweep { index, radius: 512, initial_samples: 64 }, monitor.job(), |i| chosen[i])
+            .iterate(&mut field, SearchIteration { index, radius: 512, initial_samples: 64 }, monitor.job(), |i| {
+                chosen[i]
+            })
             .expect("nobody cancels");
     }
     search.exhaustive(&mut field, monitor.job(), |i| chosen[i]).expect("nobody cancels");

@@ -90,7 +90,7 @@ fn measure(sets: impl Iterator<Item = Set>, pool: &Pool, title: &str) {
 
 /// The share of whole pixels, if the run itself ended with this vote.
 fn whole(output: &Output, mode: VoteMode) -> f64 {
-    if mode == Params::default().final_vote { output.report.whole } else { f64::NAN }
+    if mode == Params::default().final_vote { output.report.unblended_share } else { f64::NAN }
 }
 
 impl Set {

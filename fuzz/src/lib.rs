@@ -95,7 +95,7 @@ pub fn scene(data: &[u8]) {
     });
     unsafe {
         let mut hits: [luxfer_hit; 2] = std::mem::zeroed();
-        check("luxfer_scene_intersect", luxfer_scene_intersect(scene, rays.as_ptr(), 2, hits.as_mut_ptr()));
+        check("luxfer_scene_intersect", luxfer_scene_intersect(scene, rays.as_ptr(), 2, 0, hits.as_mut_ptr(), 0));
         let mut needs: luxfer_requirements = std::mem::zeroed();
         check(
             "luxfer_scene_get_requirements",

@@ -322,7 +322,7 @@ luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
  */
 luxfer_status luxfer_lamps_set_levels(luxfer_lamps *lamps,
                                       const double *levels,
-                                      uint32_t count);
+                                      size_t count);
 
 /** Removes all goals. Any thread. */
 luxfer_status luxfer_lamps_clear_goals(luxfer_lamps *lamps);
@@ -522,7 +522,7 @@ typedef struct luxfer_importance_report {
      * The response that cells of twice the width and height would give, minus the field response, in cd/m². The error
      * that comes from the size of the cells is about a third of this difference, which also contains noise.
      */
-    double band_error[3];
+    double resolution_difference[3];
 } luxfer_importance_report;
 
 /** Creates an importance map. It has no inputs yet. The caller releases *importance. Any thread. */
@@ -666,7 +666,7 @@ typedef struct luxfer_placement {
      * About a third of this difference is the error of response that comes from the size of the map's cells. The
      * difference also contains noise.
      */
-    double band_error[3];
+    double resolution_difference[3];
 } luxfer_placement;
 
 /** Make the luminance of the target as large as possible. */
@@ -832,17 +832,20 @@ typedef struct luxfer_observer_glare {
  * Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
  * samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
  * 4096 paths suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to
- * count times samples. The first call after a scene is loaded or changed also prepares the scene for tracing. Any
- * thread.
+ * count times samples. observer_stride and rating_stride are the distances between elements in bytes; 0:
+ * sizeof(luxfer_observer), sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also
+ * prepares the scene for tracing. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
  * straight up or down, or is inside a luminaire (the message names the observer). In these cases no rating is written.
  */
 luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
                                      const luxfer_observer *observers,
                                      size_t count,
+                                     size_t observer_stride,
                                      uint32_t samples,
                                      uint64_t seed,
-                                     luxfer_observer_glare *ratings);
+                                     luxfer_observer_glare *ratings,
+                                     size_t rating_stride);
 
 /* ==================================================================================================================
  * False colour
@@ -993,7 +996,7 @@ typedef struct luxfer_preset {
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    const double *primaries,
-                                   uint32_t count,
+                                   size_t count,
                                    double max_drive,
                                    const double *colour,
                                    double *drives,
@@ -1259,12 +1262,12 @@ luxfer_status luxfer_pendants_find(luxfer_context *context,
                                    luxfer_image *mask,
                                    luxfer_rectify *view,
                                    const double *suspensions,
-                                   uint32_t suspension_count,
+                                   size_t suspension_count,
                                    const luxfer_pendants_params *params,
                                    luxfer_pendant *pendants,
                                    size_t size,
-                                   uint32_t capacity,
-                                   uint32_t *count);
+                                   size_t capacity,
+                                   size_t *count);
 
 /**
  * Adds count meshes, 1 to 1024, to a scene. All have the same body, that of pendant, which luxfer_pendants_find has
@@ -1280,7 +1283,7 @@ luxfer_status luxfer_pendants_find(luxfer_context *context,
 luxfer_status luxfer_scene_add_pendants(luxfer_scene *scene,
                                         const luxfer_pendant *pendant,
                                         const double *places,
-                                        uint32_t count,
+                                        size_t count,
                                         float diameter,
                                         float luminance,
                                         uint32_t *first_mesh,

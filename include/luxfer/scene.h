@@ -59,8 +59,10 @@ typedef struct luxfer_scene_counts {
 typedef struct luxfer_surface {
     /** sizeof(luxfer_surface), set by the function that fills the struct. */
     uint32_t struct_size;
+    /** Reserved; always 0. */
+    uint32_t reserved;
     /** Number of triangles in the plane. */
-    uint32_t triangles;
+    uint64_t triangles;
     /** Corner of the bounding rectangle where u = v = 0, in metres. */
     float origin[3];
     /** Unit vector of u, along the first side of the rectangle. */
@@ -791,16 +793,20 @@ typedef struct luxfer_hit {
 } luxfer_hit;
 
 /**
- * Finds the nearest hits of count rays; the array hits receives count elements. All surfaces count as opaque and
- * two-sided. Of hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays
- * whose origin or direction is not finite, or whose direction is 0, hit nothing. The first call after a scene is
- * loaded or changed prepares the scene for tracing, which takes longer. Any thread.
- * LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the part that is not valid.
+ * Finds the nearest hits of count rays; the array hits receives count elements. ray_stride and hit_stride are the
+ * distances between elements in bytes; 0: sizeof(luxfer_ray), sizeof(luxfer_hit). Rays and hits may be fields of one
+ * struct. All surfaces count as opaque and two-sided. Of hits at equal distance, the hit with the lower index of mesh,
+ * then of triangle, is returned. Rays whose origin or direction is not finite, or whose direction is 0, hit nothing.
+ * The first call after a scene is loaded or changed prepares the scene for tracing, which takes longer. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a stride is too small or the scene is not valid: the message names the part that is not
+ * valid.
  */
 luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
                                      const luxfer_ray *rays,
                                      size_t count,
-                                     luxfer_hit *hits);
+                                     size_t ray_stride,
+                                     luxfer_hit *hits,
+                                     size_t hit_stride);
 
 /* ==================================================================================================================
  * Scene requirements
@@ -968,8 +974,8 @@ luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
 luxfer_status luxfer_scene_read_vertices(luxfer_scene *scene,
                                          uint32_t index,
                                          luxfer_vertex_attribute attribute,
-                                         size_t capacity,
-                                         float *values);
+                                         float *values,
+                                         size_t capacity);
 
 /**
  * Copies the triangles of a mesh into the array indices, a packed array of the caller with room for capacity
@@ -979,8 +985,8 @@ luxfer_status luxfer_scene_read_vertices(luxfer_scene *scene,
  */
 luxfer_status luxfer_scene_read_triangles(luxfer_scene *scene,
                                           uint32_t index,
-                                          size_t capacity,
-                                          uint32_t *indices);
+                                          uint32_t *indices,
+                                          size_t capacity);
 
 /* ==================================================================================================================
  * Candidates for the ceiling
@@ -1005,8 +1011,6 @@ typedef struct luxfer_candidate {
     luxfer_candidate_kind kind;
     /** Index of the object's first mesh in the scene, or index of the material. */
     uint32_t index;
-    /** Number of triangles whose area is not 0. */
-    uint32_t triangles;
     /** Area of all triangles in m². */
     float area;
     /**
@@ -1034,8 +1038,8 @@ typedef struct luxfer_candidate {
      * a word for a ceiling, such as "ceiling" or "Decke", raises the score to (1 + s) / 2, unless level_area is 0.
      */
     float score;
-    /** Reserved; always 0. */
-    uint32_t reserved;
+    /** Number of triangles whose area is not 0. */
+    uint64_t triangles;
     /** Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates. */
     const char *name;
     /**

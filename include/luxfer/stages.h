@@ -635,8 +635,8 @@ luxfer_status luxfer_segment_set_region(luxfer_segment *segment,
  * LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the features.
  */
 luxfer_status luxfer_segment_set_strokes(luxfer_segment *segment,
-                                         luxfer_strokes *strokes,
-                                         luxfer_phase phase);
+                                         luxfer_phase phase,
+                                         luxfer_strokes *strokes);
 
 /**
  * Starts a job that computes the mask. If strokes are missing and the features come from luxfer_features, the job
@@ -736,10 +736,10 @@ typedef struct luxfer_emission_params {
      */
     uint32_t working_side;
     /**
-     * Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_METADATA) relative to colour when patches are compared,
+     * Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_GUIDES) relative to colour when patches are compared,
      * in [0, 1e3]; default 1. 0: patches are compared by colour only, as in image quilting.
      */
-    float metadata_weight;
+    float guide_weight;
     /** Seed of the synthesis; default 1. */
     uint64_t seed;
     /**
@@ -813,8 +813,8 @@ typedef int32_t luxfer_emission_image;
 
 /**
  * Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality. A
- * plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error is 0. If there are
- * several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
+ * composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error is 0.
+ * If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
  */
 typedef struct luxfer_emission_report {
     /** sizeof(luxfer_emission_report), set by the function that fills the struct. */
@@ -824,7 +824,7 @@ typedef struct luxfer_emission_report {
     /**
      * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
      * whole lamps, and the distance from a lamp to its nearest neighbour. The value 0.1 stands for 10 %. It means
-     * little if exemplar_lamps is small. NaN for a plan.
+     * little if exemplar_lamps is small. NaN for a composition.
      */
     double error;
     /**
@@ -843,8 +843,8 @@ typedef struct luxfer_emission_report {
      * Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
      * ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
      * of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
-     * indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a plan, and if
-     * the texture is hardly larger than the exemplar.
+     * indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a composition, and
+     * if the texture is hardly larger than the exemplar.
      */
     float sampling_error;
     /** The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value. */
@@ -907,13 +907,13 @@ typedef struct luxfer_luminaire {
  * and clamped to [-1, 1]. L is the side of a patch or, if the lights have periods, half the longer period if that is
  * shorter.
  */
-#define LUXFER_EMISSION_EXEMPLAR_METADATA 2
+#define LUXFER_EMISSION_EXEMPLAR_GUIDES 2
 
 /**
- * The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_METADATA,
+ * The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_GUIDES,
  * copied with the patches that give the texture its colours.
  */
-#define LUXFER_EMISSION_METADATA 3
+#define LUXFER_EMISSION_GUIDES 3
 
 /** Creates a synthesis of an emissive texture. It has no inputs yet. The caller releases *emission. Any thread. */
 luxfer_status luxfer_emission_create(luxfer_context *context,
@@ -940,7 +940,7 @@ luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
 
 /**
  * Starts a job that makes the whole texture in memory. For textures that are too large for that, use
- * luxfer_emission_start_plan. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * luxfer_emission_start_composition. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
  * LUXFER_DEGENERATE if the exemplar has no lights, or not the lattice or row that the setting law asks for;
  * LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
@@ -951,15 +951,16 @@ luxfer_status luxfer_emission_start(luxfer_emission *emission,
 
 /**
  * Gets the image that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
- * LUXFER_NOT_READY before a job of luxfer_emission_start has succeeded, or if a later plan has replaced its texture.
+ * LUXFER_NOT_READY before a job of luxfer_emission_start has succeeded, or if a later composition has replaced its
+ * texture.
  */
 luxfer_status luxfer_emission_get_image(luxfer_emission *emission,
                                         luxfer_emission_image kind,
                                         luxfer_image **image);
 
 /**
- * Gets the description of the texture, or of the plan after luxfer_emission_start_plan. size is sizeof *report. Any
- * thread.
+ * Gets the description of the texture, or of the composition after luxfer_emission_start_composition. size is sizeof
+ * *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
@@ -969,9 +970,9 @@ luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
 /**
  * Describes a luminaire of the texture; index starts at 0. size is sizeof *luminaire. Any thread.
  *
- * A plan (luxfer_emission_start_plan) has no texels yet. Its luminaires are measured in the exemplar, and cut at the
- * edges of the texture. Only lights that are copied patch by patch are measured as the texture will show them: lights
- * that run through the whole exemplar, such as light bands, and all lights if whole_lamps is 0.
+ * A composition (luxfer_emission_start_composition) has no texels yet. Its luminaires are measured in the exemplar, and
+ * cut at the edges of the texture. Only lights that are copied patch by patch are measured as the texture will show
+ * them: lights that run through the whole exemplar, such as light bands, and all lights if whole_lamps is 0.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -987,7 +988,7 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
  * are larger than texels, these figures are in unwarped pixels.
  *
  * In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only 0
- * and 1, and for lights of a plan that are copied patch by patch (see luxfer_emission_get_luminaire).
+ * and 1, and for lights of a composition that are copied patch by patch (see luxfer_emission_get_luminaire).
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
  */
 luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
@@ -1000,9 +1001,9 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
  * Styles and tiles
  *
  * luxfer_emission_add_style adds exemplars, whose lights are then mixed in one texture. Textures that are too large to
- * make as a whole are made in tiles: luxfer_emission_start_plan decides where every lamp lies, and
- * luxfer_emission_render_tile renders any rectangle of the texture. A plan holds the exemplars, the place of each lamp
- * and the outlines of the patches, but no texels.
+ * make as a whole are made in tiles: luxfer_emission_start_composition decides where every lamp lies, and
+ * luxfer_emission_render_tile renders any rectangle of the texture. A composition holds the exemplars, the place of
+ * each lamp and the outlines of the patches, but no texels.
  * ================================================================================================================== */
 
 /**
@@ -1033,23 +1034,23 @@ luxfer_status luxfer_emission_add_style(luxfer_emission *emission,
 luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
 
 /**
- * Starts a job that plans the texture: it decides where every lamp lies, but makes no texels. The plan replaces a
- * texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
- * luxfer_emission_get_report and luxfer_emission_get_luminaire describe the plan and its lamps. The caller releases
- * *job. Any thread.
+ * Starts a job that composes the texture: it decides where every lamp lies, but makes no texels. The composition
+ * replaces a texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
+ * luxfer_emission_get_report and luxfer_emission_get_luminaire describe the composition and its lamps. The caller
+ * releases *job. Any thread.
  */
-luxfer_status luxfer_emission_start_plan(luxfer_emission *emission,
+luxfer_status luxfer_emission_start_composition(luxfer_emission *emission,
                                          const luxfer_emission_params *params,
                                          luxfer_job **job);
 
 /**
- * Renders a rectangle (a tile) of a planned texture: width x height texels, of which the top-left one is texel (x, y)
+ * Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
  * of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The tiles are equal to
  * the bit to the texture and the mask that luxfer_emission_start makes, whatever their sizes and the order in which
  * they are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several
  * threads may render tiles at the same time.
- * LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
- * is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ * LUXFER_NOT_READY before a job of luxfer_emission_start_composition has succeeded; LUXFER_INVALID_ARGUMENT if the
+ * rectangle is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_emission_render_tile(luxfer_emission *emission,
                                           uint32_t x,

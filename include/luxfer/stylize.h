@@ -148,7 +148,7 @@ typedef int32_t luxfer_stylize_search;
 typedef int32_t luxfer_stylize_vote;
 
 /**
- * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
+ * Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_get_preset. The defaults
  * stated here belong to LUXFER_STYLIZE_FULL.
  */
 typedef struct luxfer_stylize_params {
@@ -180,8 +180,8 @@ typedef struct luxfer_stylize_params {
      * In other modes these are additional rounds of that mode.
      */
     uint32_t polish;
-    /** Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1. */
-    uint32_t sweeps;
+    /** Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1. */
+    uint32_t search_iterations;
     /**
      * Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
      * default 0.9.
@@ -192,13 +192,13 @@ typedef struct luxfer_stylize_params {
      */
     uint32_t passes;
     /**
-     * Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target patch
-     * may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
+     * Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration, a target
+     * patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
      */
     uint32_t settle;
     /**
      * Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between two
-     * neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the sweeps
+     * neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the iterations
      * after each matching; see settle.
      */
     float seam;
@@ -306,7 +306,7 @@ typedef int32_t luxfer_stylize_preset;
 #define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0
 
 /** A k-d tree over the mean colours and guides of patches. */
-#define LUXFER_STYLIZE_SEARCH_TABLE 1
+#define LUXFER_STYLIZE_SEARCH_KD_TREE 1
 
 /** The mean of the overlapping patches. */
 #define LUXFER_STYLIZE_VOTE_PLAIN 0
@@ -324,13 +324,13 @@ typedef int32_t luxfer_stylize_preset;
  * The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork meet,
  * each stays whole up to the seam.
  */
-#define LUXFER_STYLIZE_VOTE_MOST 3
+#define LUXFER_STYLIZE_VOTE_MAJORITY 3
 
 /**
- * A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST. The proportion varies, so that each place of the
- * picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
+ * A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MAJORITY. The proportion varies, so that each place of
+ * the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
  * pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
- * luxfer_stylize_report.whole is the share of whole pixels.
+ * luxfer_stylize_report.unblended_share is the share of whole pixels.
  */
 #define LUXFER_STYLIZE_VOTE_ADAPTIVE 4
 
@@ -339,9 +339,9 @@ typedef int32_t luxfer_stylize_preset;
  * LUXFER_STYLIZE_PAPER. size is sizeof *params. Any thread.
  * LUXFER_INVALID_ARGUMENT if preset is another value.
  */
-luxfer_status luxfer_stylize_params_preset(luxfer_stylize_params *params,
-                                           luxfer_stylize_preset preset,
-                                           size_t size);
+luxfer_status luxfer_stylize_get_preset(luxfer_stylize_params *params,
+                                        size_t size,
+                                        luxfer_stylize_preset preset);
 
 /* ==================================================================================================================
  * Stylisation
@@ -560,7 +560,7 @@ typedef struct luxfer_stylize_report {
      * Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
      * LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
      */
-    double whole;
+    double unblended_share;
 } luxfer_stylize_report;
 
 /** One round (EM iteration) on a level: matching, then voting. */

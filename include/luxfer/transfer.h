@@ -802,7 +802,7 @@ const char *luxfer_warning_get_name(luxfer_warning_code code);
  * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
  * - a luxfer_features;
  * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
- * - a luxfer_emission: about the texture; none if luxfer_emission_start_plan has only planned a texture;
+ * - a luxfer_emission: about the texture; none if luxfer_emission_start_composition has only composed a texture;
  * - a luxfer_relight;
  * - a luxfer_guides: about the latest motion that luxfer_guides_get_motion has computed for it;
  * - a luxfer_stylize: about the exemplar, the light and the motion of its latest result;

@@ -60,7 +60,7 @@ pub struct Params {
     pub working_side: usize,
     /// Weight, in `[0, 1e3]`, of the metadata channels (confidence, x and y distance to the nearest light) relative to
     /// colour; 0 is plain quilting.
-    pub metadata_weight: f32,
+    pub guide_weight: f32,
     /// Position of the pattern's origin relative to the texture's top left corner, in texels, each coordinate in
     /// `[-1e6, 1e6]`. Without a lattice there is no origin: the offset then shifts the lamps of a tileable texture,
     /// and must be 0 in other textures.
@@ -104,7 +104,7 @@ impl Default for Params {
             block: 0,
             candidates: 192,
             working_side: 256,
-            metadata_weight: 1.0,
+            guide_weight: 1.0,
             offset: DVec2::ZERO,
             min_regularity: 0.6,
             law: LawMode::Best,
@@ -129,7 +129,7 @@ impl Params {
         check_range("emission.block", self.block, 0, 65_536)?;
         check_range("emission.candidates", self.candidates, 1, 65_536)?;
         check_range("emission.working_side", self.working_side, 16, 2048)?;
-        check_range("emission.metadata_weight", self.metadata_weight, 0.0, 1e3)?;
+        check_range("emission.guide_weight", self.guide_weight, 0.0, 1e3)?;
         check_range("emission.offset.x", self.offset.x, -1e6, 1e6)?;
         check_range("emission.offset.y", self.offset.y, -1e6, 1e6)?;
         check_range("emission.min_regularity", self.min_regularity, 0.0, 1.0)?;

@@ -425,7 +425,7 @@ fn what_has_no_answer_is_an_error_that_says_so() {
         Params { scale: 0.0, ..Params::default() },
         Params { scale: f64::NAN, ..Params::default() },
         Params { working_side: 4, ..Params::default() },
-        Params { metadata_weight: -1.0, ..Params::default() },
+        Params { guide_weight: -1.0, ..Params::default() },
     ] {
         assert_eq!(exemplar.run(&bad).unwrap_err().kind, ErrorKind::InvalidArgument, "{bad:?}");
     }

@@ -39,8 +39,6 @@ pub struct luxfer_candidate {
     pub kind: luxfer_candidate_kind,
     /// Index of the object's first mesh in the scene, or index of the material.
     pub index: u32,
-    /// Number of triangles whose area is not 0.
-    pub triangles: u32,
     /// Area of all triangles in m².
     pub area: f32,
     /// Area in m² of the level triangles. A triangle is level if it faces up or down and is inclined by at most 15
@@ -60,8 +58,8 @@ pub struct luxfer_candidate {
     /// of the scene's bounding box in m², and h = (height - lowest y of the scene) / (height of the scene). A name with
     /// a word for a ceiling, such as "ceiling" or "Decke", raises the score to (1 + s) / 2, unless level_area is 0.
     pub score: f32,
-    /// Reserved; always 0.
-    pub reserved: u32,
+    /// Number of triangles whose area is not 0.
+    pub triangles: u64,
     /// Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
     pub name: *const c_char,
     /// The reason for the score: an English sentence that states area, level_area, height and the shares of the formula
@@ -76,7 +74,6 @@ versioned!(luxfer_candidate, [SIZE], {
         struct_size: SIZE as u32,
         kind: LUXFER_CANDIDATE_OBJECT,
         index: 0,
-        triangles: 0,
         area: 0.0,
         level_area: 0.0,
         height: 0.0,
@@ -84,7 +81,7 @@ versioned!(luxfer_candidate, [SIZE], {
         high: 0.0,
         normal: [0.0; 3],
         score: 0.0,
-        reserved: 0,
+        triangles: 0,
         name: std::ptr::null(),
         reason: std::ptr::null(),
     }
@@ -177,7 +174,6 @@ pub unsafe extern "C" fn luxfer_candidates_get(
                 Kind::Material => LUXFER_CANDIDATE_MATERIAL,
             },
             index: count(found.index),
-            triangles: count(found.triangles),
             area: found.area as f32,
             level_area: found.level_area as f32,
             height: found.height as f32,
@@ -185,6 +181,7 @@ pub unsafe extern "C" fn luxfer_candidates_get(
             high: found.high as f32,
             normal: found.normal.as_vec3().to_array(),
             score: found.score as f32,
+            triangles: found.triangles as u64,
             name: entry.name.as_ptr(),
             reason: entry.reason.as_ptr(),
             ..luxfer_candidate::defaults()

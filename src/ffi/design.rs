@@ -100,7 +100,7 @@ versioned!(luxfer_preset, [56], {
 pub unsafe extern "C" fn luxfer_mix_primaries(
     context: *mut luxfer_context,
     primaries: *const f64,
-    count: u32,
+    count: usize,
     max_drive: f64,
     colour: *const f64,
     drives: *mut f64,
@@ -109,10 +109,10 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
 ) -> luxfer_status {
     enter(context, |_| {
         let out = Report::new(mixture, size)?;
-        check_range("count", count as usize, 1, MAX_PRIMARIES)?;
-        let primaries = list(primaries, 3 * count as usize, "primaries")?;
+        check_range("count", count, 1, MAX_PRIMARIES)?;
+        let primaries = list(primaries, 3 * count, "primaries")?;
         let primaries: Vec<DVec3> = primaries.chunks_exact(3).map(DVec3::from_slice).collect();
-        let places = bytes_mut(drives.cast(), count as usize * size_of::<f64>(), "drives")?;
+        let places = bytes_mut(drives.cast(), count * size_of::<f64>(), "drives")?;
         let mixed = mix_primaries(&primaries, max_drive, DVec3::from_array(numbers(colour, "colour")?))?;
         for (place, drive) in places.chunks_exact_mut(size_of::<f64>()).zip(mixed.drives) {
             place.copy_from_slice(&drive.to_ne_bytes());

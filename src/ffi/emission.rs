@@ -38,10 +38,10 @@ pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 /// resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light. Channels 1 and 2 are
 /// the x and y distances from the pixel to the nearest lit pixel, positive to the right and down, divided by a length L
 /// and clamped to [-1, 1]. L is the side of a patch, but at most half the longer period if the lights repeat.
-pub const LUXFER_EMISSION_EXEMPLAR_METADATA: luxfer_emission_image = 2;
-/// The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_METADATA,
+pub const LUXFER_EMISSION_EXEMPLAR_GUIDES: luxfer_emission_image = 2;
+/// The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_GUIDES,
 /// copied with the patches that give the texture its colours.
-pub const LUXFER_EMISSION_METADATA: luxfer_emission_image = 3;
+pub const LUXFER_EMISSION_GUIDES: luxfer_emission_image = 3;
 
 /// Settings of an emissive texture. Fill them with luxfer_emission_params_init.
 #[repr(C)]
@@ -62,9 +62,9 @@ pub struct luxfer_emission_params {
     /// Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048]; default
     /// 256.
     pub working_side: u32,
-    /// Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_METADATA) relative to colour when patches are compared,
+    /// Weight of the guide channels (LUXFER_EMISSION_EXEMPLAR_GUIDES) relative to colour when patches are compared,
     /// in [0, 1e3]; default 1. 0: patches are compared by colour only, as in image quilting.
-    pub metadata_weight: f32,
+    pub guide_weight: f32,
     /// Seed of the synthesis; default 1.
     pub seed: u64,
     /// Threshold of LUXFER_LAW_CORRELATION, in [0, 1]; default 0.6. A shift counts as a period of the lights if their
@@ -120,7 +120,7 @@ versioned!(luxfer_emission_params, [104], {
         block: d.block as u32,
         scale: d.scale,
         working_side: d.working_side as u32,
-        metadata_weight: d.metadata_weight,
+        guide_weight: d.guide_weight,
         seed: d.seed,
         min_regularity: d.min_regularity,
         whole_lamps: u32::from(d.whole_lamps),
@@ -148,7 +148,7 @@ impl luxfer_emission_params {
             scale: self.scale,
             block: self.block as usize,
             working_side: self.working_side as usize,
-            metadata_weight: self.metadata_weight,
+            guide_weight: self.guide_weight,
             offset: DVec2::from_array(self.offset),
             min_regularity: self.min_regularity,
             whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
@@ -166,8 +166,8 @@ impl luxfer_emission_params {
 }
 
 /// Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality. A
-/// plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error is 0. If there are
-/// several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
+/// composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error is 0.
+/// If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {
@@ -177,7 +177,7 @@ pub struct luxfer_emission_report {
     pub luminaires: u32,
     /// Largest relative difference between texture and exemplar in three statistics: the share of lit area, the mean
     /// area of a whole lamp, and the mean distance from a whole lamp to its nearest neighbour. The value 0.1 stands for
-    /// 10 %. It means little if exemplar_lamps is small. NaN for a plan.
+    /// 10 %. It means little if exemplar_lamps is small. NaN for a composition.
     pub error: f64,
     /// Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period. If there are two
     /// periods, it is the lower of their two autocorrelations. 0 if the lights have no period, or if the period was
@@ -191,8 +191,8 @@ pub struct luxfer_emission_report {
     /// Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
     /// ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
     /// of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
-    /// indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a plan, and if
-    /// the texture is too small to hold parts as large as the exemplar at clearly different places.
+    /// indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a composition,
+    /// and if the texture is too small to hold parts as large as the exemplar at clearly different places.
     pub sampling_error: f32,
     /// The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
@@ -290,29 +290,29 @@ pub(super) struct Inputs {
     pub styles: Vec<AddedExemplar>,
 }
 
-/// The result of the stage: a texture, or the plan of a texture.
+/// The result of the stage: a texture, or the composition of a texture.
 #[derive(Default)]
 pub(super) struct Output {
     pub texture: Option<Arc<Emission>>,
-    pub plan: Option<Planned>,
+    pub composed: Option<Composed>,
 }
 
-/// The plan of a texture, its lamps, and the inputs that the plan was made from.
-pub(super) struct Planned {
-    pub plan: emission::Composition,
+/// The composition of a texture, its lamps, and the inputs that it was made from.
+pub(super) struct Composed {
+    pub composition: emission::Composition,
     pub lamps: LampList,
     pub inputs: Inputs,
 }
 
 impl Output {
     fn luminaires(&self) -> usize {
-        let planned = self.plan.as_ref().map(|p| p.lamps.count());
-        planned.or(self.texture.as_ref().map(|t| t.luminaires.len())).unwrap_or(0)
+        let composed = self.composed.as_ref().map(|p| p.lamps.count());
+        composed.or(self.texture.as_ref().map(|t| t.luminaires.len())).unwrap_or(0)
     }
 
     fn luminaire(&self, index: u32) -> Result<Cow<'_, Luminaire>> {
-        let lamp = match (&self.plan, &self.texture) {
-            (Some(Planned { plan, lamps, .. }), _) => lamps.get(plan, index as usize).map(Cow::Owned),
+        let lamp = match (&self.composed, &self.texture) {
+            (Some(Composed { composition, lamps, .. }), _) => lamps.get(composition, index as usize).map(Cow::Owned),
             (_, Some(texture)) => texture.luminaires.get(index as usize).map(Cow::Borrowed),
             _ => None,
         };
@@ -348,10 +348,10 @@ impl Inputs {
     }
 }
 
-/// Returns the texture of a stage. Returns an error if the stage has no result, or has only a plan.
+/// Returns the texture of a stage. Returns an error if the stage has no result, or has only a composition.
 fn texture(stage: &Stage<Inputs, Output>) -> Result<Arc<Emission>> {
     stage.output()?.texture.clone().ok_or_else(|| {
-        Error::new(ErrorKind::NotReady, "the stage has planned a texture; luxfer_emission_start makes one as a whole")
+        Error::new(ErrorKind::NotReady, "the stage has composed a texture; luxfer_emission_start makes one as a whole")
     })
 }
 
@@ -435,7 +435,7 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
 }
 
 /// Starts a job that makes the whole texture in memory. For textures that are too large for that, use
-/// luxfer_emission_start_plan. params may be NULL for the defaults. The caller releases *job. Any thread.
+/// luxfer_emission_start_composition. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
 /// LUXFER_DEGENERATE if the exemplar has no lights, or if the setting law asks for a lattice or a row that the lights
 /// do not form; LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
@@ -450,13 +450,14 @@ pub unsafe extern "C" fn luxfer_emission_start(
         need(&stage.inputs().unwarped, "luxfer_emission_set_exemplar")?;
         stage.start(job, move |inputs, _, job| {
             let made = inputs.with(|input, styles| emission::blend(input, styles, &params, job))?;
-            Ok(Output { texture: Some(Arc::new(made)), plan: None })
+            Ok(Output { texture: Some(Arc::new(made)), composed: None })
         })
     })
 }
 
 /// Gets the image that a LUXFER_EMISSION_ value selects. The caller releases *image. Any thread.
-/// LUXFER_NOT_READY before a job of luxfer_emission_start has succeeded, or if a later plan has replaced its texture.
+/// LUXFER_NOT_READY before a job of luxfer_emission_start has succeeded, or if a later composition has replaced its
+/// texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_image(
     emission: *mut luxfer_emission,
@@ -468,8 +469,8 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
         let pick: fn(&Emission) -> &Image = match kind {
             LUXFER_EMISSION_TEXTURE => |e| &e.texture,
             LUXFER_EMISSION_MASK => |e| &e.mask,
-            LUXFER_EMISSION_EXEMPLAR_METADATA => |e| &e.exemplar_metadata,
-            LUXFER_EMISSION_METADATA => |e| &e.metadata,
+            LUXFER_EMISSION_EXEMPLAR_GUIDES => |e| &e.exemplar_metadata,
+            LUXFER_EMISSION_GUIDES => |e| &e.metadata,
             _ => return Err(Error::argument(format!("kind is {kind}; it must be a LUXFER_EMISSION_ value"))),
         };
         out.set(handle::give(Pixels::part(stage.context(), texture(stage)?, pick)));
@@ -477,8 +478,8 @@ pub unsafe extern "C" fn luxfer_emission_get_image(
     })
 }
 
-/// Gets the description of the texture, or of the plan after luxfer_emission_start_plan. size is sizeof *report. Any
-/// thread.
+/// Gets the description of the texture, or of the composition after luxfer_emission_start_composition. size is sizeof
+/// *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_report(
@@ -490,13 +491,15 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
         let out = Report::new(report, size)?;
         let made = stage.output()?;
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        let (error, sampling_error, regularity, exemplar_lamps) = match (&made.plan, &made.texture) {
-            (Some(planned), _) => (f64::NAN, 0.0, planned.plan.regularity(), planned.plan.exemplar_lamps()),
+        let (error, sampling_error, regularity, exemplar_lamps) = match (&made.composed, &made.texture) {
+            (Some(composed), _) => {
+                (f64::NAN, 0.0, composed.composition.regularity(), composed.composition.exemplar_lamps())
+            }
             (_, Some(texture)) => (texture.error, texture.sampling_error, texture.regularity, texture.exemplar_lamps),
             _ => (f64::NAN, 0.0, 0.0, 0),
         };
-        let (law, choice) = match (&made.plan, &made.texture) {
-            (Some(planned), _) => planned.plan.law(),
+        let (law, choice) = match (&made.composed, &made.texture) {
+            (Some(composed), _) => composed.composition.law(),
             (_, Some(texture)) => (texture.law, texture.choice),
             _ => (Law::Copy, Choice::only(Law::Copy)),
         };
@@ -518,10 +521,10 @@ pub unsafe extern "C" fn luxfer_emission_get_report(
 
 /// Describes a luminaire of the texture; index starts at 0. size is sizeof *luminaire. Any thread.
 ///
-/// A plan (luxfer_emission_start_plan) has no texels yet. Its luminaires are measured in the exemplar, and cut at the
-/// edges of the texture. Lights that are copied patch by patch are the exception: they are measured as the texture will
-/// show them. These are lights that run through the whole exemplar, such as light bands, and all lights if whole_lamps
-/// is 0.
+/// A composition (luxfer_emission_start_composition) has no texels yet. Its luminaires are measured in the exemplar,
+/// and cut at the edges of the texture. Lights that are copied patch by patch are the exception: they are measured as
+/// the texture will show them. These are lights that run through the whole exemplar, such as light bands, and all
+/// lights if whole_lamps is 0.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_luminaire(
@@ -556,7 +559,7 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
 /// are larger than texels, these figures are in unwarped pixels.
 ///
 /// In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only 0
-/// and 1, and for lights of a plan that are copied patch by patch (see luxfer_emission_get_luminaire).
+/// and 1, and for lights of a composition that are copied patch by patch (see luxfer_emission_get_luminaire).
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire or corner.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_get_corner(

@@ -1,12 +1,12 @@
 //! Styles and tiles
 //!
 //! luxfer_emission_add_style adds exemplars, whose lights are then mixed in one texture. Textures that are too large to
-//! make as a whole are made in tiles: luxfer_emission_start_plan decides where every lamp lies, and
-//! luxfer_emission_render_tile renders any rectangle of the texture. A plan holds the exemplars, the place of each lamp
-//! and the outlines of the patches, but no texels.
+//! make as a whole are made in tiles: luxfer_emission_start_composition decides where every lamp lies, and
+//! luxfer_emission_render_tile renders any rectangle of the texture. A composition holds the exemplars, the place of
+//! each lamp and the outlines of the patches, but no texels.
 
 use super::emission::{
-    AddedExemplar, Exemplar, Output, Planned, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
+    AddedExemplar, Composed, Exemplar, Output, luxfer_emission, luxfer_emission_params, photo_of, unwarped_of,
 };
 use super::guard::enter;
 use super::handle::{self, Owned};
@@ -66,12 +66,12 @@ pub unsafe extern "C" fn luxfer_emission_clear_styles(emission: *mut luxfer_emis
     })
 }
 
-/// Starts a job that plans the texture: it decides where every lamp lies, but makes no texels. The plan replaces a
-/// texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
-/// luxfer_emission_get_report and luxfer_emission_get_luminaire describe the plan and its lamps. The caller releases
-/// *job. Any thread.
+/// Starts a job that composes the texture: it decides where every lamp lies, but makes no texels. The composition
+/// replaces a texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
+/// luxfer_emission_get_report and luxfer_emission_get_luminaire describe the composition and its lamps. The caller
+/// releases *job. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_emission_start_plan(
+pub unsafe extern "C" fn luxfer_emission_start_composition(
     emission: *mut luxfer_emission,
     params: *const luxfer_emission_params,
     job: *mut *mut luxfer_job,
@@ -80,23 +80,23 @@ pub unsafe extern "C" fn luxfer_emission_start_plan(
         let params = params::read(params)?.params()?;
         stage.inputs().with(|_, _| Ok(()))?;
         stage.start(job, move |inputs, _, job| {
-            let (plan, lamps) = inputs.with(|input, styles| {
-                let plan = Composition::new(input, styles, &params, job.part(0.0, 0.95))?;
-                let lamps = LampList::new(&plan, input, styles, job.part(0.95, 1.0))?;
-                Ok((plan, lamps))
+            let (composition, lamps) = inputs.with(|input, styles| {
+                let composition = Composition::new(input, styles, &params, job.part(0.0, 0.95))?;
+                let lamps = LampList::new(&composition, input, styles, job.part(0.95, 1.0))?;
+                Ok((composition, lamps))
             })?;
-            Ok(Output { plan: Some(Planned { plan, lamps, inputs: inputs.clone() }), ..Output::default() })
+            Ok(Output { composed: Some(Composed { composition, lamps, inputs: inputs.clone() }), ..Output::default() })
         })
     })
 }
 
-/// Renders a rectangle (a tile) of a planned texture: width x height texels, of which the top-left one is texel (x, y)
+/// Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
 /// of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The tiles are equal to
 /// the bit to the texture and the mask that luxfer_emission_start makes, whatever their sizes and the order in which
 /// they are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several
 /// threads may render tiles at the same time.
-/// LUXFER_NOT_READY before a job of luxfer_emission_start_plan has succeeded; LUXFER_INVALID_ARGUMENT if the rectangle
-/// is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+/// LUXFER_NOT_READY before a job of luxfer_emission_start_composition has succeeded; LUXFER_INVALID_ARGUMENT if the
+/// rectangle is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_render_tile(
     emission: *mut luxfer_emission,
@@ -109,15 +109,18 @@ pub unsafe extern "C" fn luxfer_emission_render_tile(
     enter(emission, |stage| {
         let out = Out::new(tile, "tile")?;
         let made = stage.output()?;
-        let Planned { plan, inputs, .. } = made.plan.as_ref().ok_or_else(|| {
-            Error::new(ErrorKind::NotReady, "nothing is planned: call luxfer_emission_start_plan and wait for its job")
+        let Composed { composition, inputs, .. } = made.composed.as_ref().ok_or_else(|| {
+            Error::new(
+                ErrorKind::NotReady,
+                "nothing is composed: call luxfer_emission_start_composition and wait for its job",
+            )
         })?;
         let part = Tile { x: x as usize, y: y as usize, width: width as usize, height: height as usize };
-        plan.check(part)?;
+        composition.check(part)?;
         let context = stage.context();
         let image = Pixels::counted(context, part.width, part.height, 4, || {
             let monitor = context.monitor();
-            let render = || inputs.with(|input, styles| plan.tile(input, styles, part, monitor.job()));
+            let render = || inputs.with(|input, styles| composition.tile(input, styles, part, monitor.job()));
             let (texture, mask) = context.quick.run(render)?;
             let mut image = Image::new(part.width, part.height, 4)?;
             let texels = texture.data.chunks_exact(3).zip(&mask.data);

@@ -8,7 +8,7 @@
 use super::guard::enter;
 use super::handle::Owned;
 use super::pointer::{bytes, bytes_mut, floats};
-use super::query::size_of_all;
+use super::query::strided;
 use super::scene::luxfer_scene;
 use super::status::luxfer_status;
 use crate::error::Result;
@@ -56,8 +56,9 @@ pub struct luxfer_observer_glare {
 /// Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
 /// samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
 /// 4096 paths suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to
-/// count times samples. The first call after a scene is loaded or changed also prepares the scene for tracing. Any
-/// thread.
+/// count times samples. observer_stride and rating_stride are the distances between elements in bytes; 0:
+/// sizeof(luxfer_observer), sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also
+/// prepares the scene for tracing. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
 /// straight up or down, or is inside a luminaire (the message names the observer). In these cases no rating is written.
 #[unsafe(no_mangle)]
@@ -65,25 +66,32 @@ pub unsafe extern "C" fn luxfer_scene_get_glare(
     scene: *mut luxfer_scene,
     observers: *const luxfer_observer,
     count: usize,
+    observer_stride: usize,
     samples: u32,
     seed: u64,
     ratings: *mut luxfer_observer_glare,
+    rating_stride: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
         if count == 0 {
             return Ok(());
         }
-        let observers = bytes(observers.cast(), size_of_all::<luxfer_observer>(count)?, "observers")?;
-        let places = bytes_mut(ratings.cast(), size_of_all::<luxfer_observer_glare>(count)?, "ratings")?;
+        let (observer_stride, size) = strided::<luxfer_observer>(count, observer_stride, "observers")?;
+        let (rating_stride, ratings_size) = strided::<luxfer_observer_glare>(count, rating_stride, "ratings")?;
+        bytes_mut(ratings.cast(), ratings_size, "ratings")?;
+        let observers = bytes(observers.cast(), size, "observers")?;
         let mut eyes = try_vec(count, Eye { position: Vec3::ZERO, direction: Vec3::ZERO })?;
-        for (place, raw) in eyes.iter_mut().zip(observers.chunks_exact(size_of::<luxfer_observer>())) {
-            *place = eye(raw);
+        for (place, raw) in eyes.iter_mut().zip(observers.chunks(observer_stride)) {
+            *place = eye(&raw[..size_of::<luxfer_observer>()]);
         }
         let world = object.ready_world()?;
         let (params, monitor) = (glare::Params { samples, seed }, object.context().monitor());
         let rated: Result<Vec<Rating>> =
             object.context().quick.run(|| glare::rate(&world, &eyes, &params, monitor.job()));
-        for (place, rating) in places.chunks_exact_mut(size_of::<luxfer_observer_glare>()).zip(&rated?) {
+        // Each rating is written alone, because observers may lie between the ratings.
+        for (i, rating) in rated?.iter().enumerate() {
+            let place = ratings.wrapping_byte_add(i * rating_stride);
+            let place = bytes_mut(place.cast(), size_of::<luxfer_observer_glare>(), "ratings")?;
             place.copy_from_slice(bytemuck::cast_slice(&words(rating)));
         }
         Ok(())

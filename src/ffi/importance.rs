@@ -82,11 +82,11 @@ pub struct luxfer_importance_report {
     pub half_width: [f64; 3],
     /// The response that cells of twice the width and height would give, minus the field response, in cd/m². The error
     /// that comes from the size of the cells is about a third of this difference, which also contains noise.
-    pub band_error: [f64; 3],
+    pub resolution_difference: [f64; 3],
 }
 
 versioned!(luxfer_importance_report, [80], {
-    Self { struct_size: 80, paths: 0, response: [0.0; 3], half_width: [0.0; 3], band_error: [0.0; 3] }
+    Self { struct_size: 80, paths: 0, response: [0.0; 3], half_width: [0.0; 3], resolution_difference: [0.0; 3] }
 });
 
 #[derive(Clone, Default)]
@@ -220,7 +220,7 @@ pub unsafe extern "C" fn luxfer_importance_respond(
             paths: map.paths,
             response: response.light.mean.to_array(),
             half_width: response.light.half_width().to_array(),
-            band_error: response.band_error.to_array(),
+            resolution_difference: response.resolution_difference.to_array(),
             ..luxfer_importance_report::defaults()
         });
         Ok(())

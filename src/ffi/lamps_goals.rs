@@ -119,13 +119,13 @@ pub unsafe extern "C" fn luxfer_lamps_set_constraint(
 pub unsafe extern "C" fn luxfer_lamps_set_levels(
     lamps: *mut luxfer_lamps,
     levels: *const f64,
-    count: u32,
+    count: usize,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        if count as usize > MAX_LEVELS {
+        if count > MAX_LEVELS {
             return Err(Error::argument(format!("count is {count}; it must be at most {MAX_LEVELS}")));
         }
-        let levels = if count == 0 { Vec::new() } else { list(levels, count as usize, "levels")? };
+        let levels = if count == 0 { Vec::new() } else { list(levels, count, "levels")? };
         for (i, level) in levels.iter().enumerate() {
             if !(*level >= 0.0 && level.is_finite()) {
                 return Err(Error::argument(format!("level {i} is {level}; it must be finite and not negative")));

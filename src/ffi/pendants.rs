@@ -288,7 +288,7 @@ versioned!(luxfer_pendant, [REPORT_SIZE], {
 
 const _: () = assert!(LUXFER_MAX_PENDANTS as usize == fixture::MAX_LAMPS);
 /// Largest number of lamps that one call adds to a scene.
-const MAX_PLACES: u32 = 1024;
+const MAX_PLACES: usize = 1024;
 /// A kind with a lower probability gets LUXFER_DOUBT_KIND. [convention]
 const SURE: f64 = 0.9;
 /// A lamp with a larger share of clipped pixels gets LUXFER_DOUBT_CLIPPED. [convention]
@@ -381,12 +381,12 @@ pub unsafe extern "C" fn luxfer_pendants_find(
     mask: *mut luxfer_image,
     view: *mut luxfer_rectify,
     suspensions: *const f64,
-    suspension_count: u32,
+    suspension_count: usize,
     params: *const luxfer_pendants_params,
     pendants: *mut luxfer_pendant,
     size: usize,
-    capacity: u32,
-    count: *mut u32,
+    capacity: usize,
+    count: *mut usize,
 ) -> luxfer_status {
     enter(context, |object| {
         let context = object.context();
@@ -398,17 +398,17 @@ pub unsafe extern "C" fn luxfer_pendants_find(
         let photo = handle::borrow_in(context, photo, "photo")?;
         let mask = handle::borrow_in(context, mask, "mask")?;
         let (camera, shifted) = &settings.cameras(context, view, photo.image())?;
-        let suspensions = points::<2>(suspensions, suspension_count, 0, LUXFER_MAX_PENDANTS, "suspension")?;
+        let suspensions = points::<2>(suspensions, suspension_count, 0, LUXFER_MAX_PENDANTS as usize, "suspension")?;
         let suspensions = &suspensions.into_iter().map(DVec2::from_array).collect::<Vec<DVec2>>();
         let input = fixture::Input { camera, shifted, suspensions, known };
         let monitor = context.monitor();
         let fixtures =
             context.quick.run(|| fixture::run(photo.image(), mask.image(), &input, &params, monitor.job()))?;
         let lamps = || fixtures.iter().flat_map(|found| found.lamps.iter().map(move |lamp| (found, lamp)));
-        for (index, (found, lamp)) in lamps().enumerate().take(capacity as usize) {
+        for (index, (found, lamp)) in lamps().enumerate().take(capacity) {
             Report::new(pendants.wrapping_byte_add(index * size), size)?.set(luxfer_pendant::new(found, lamp));
         }
-        out.set(lamps().count() as u32);
+        out.set(lamps().count());
         Ok(())
     })
 }
@@ -427,7 +427,7 @@ pub unsafe extern "C" fn luxfer_scene_add_pendants(
     scene: *mut luxfer_scene,
     pendant: *const luxfer_pendant,
     places: *const f64,
-    count: u32,
+    count: usize,
     diameter: f32,
     luminance: f32,
     first_mesh: *mut u32,
@@ -444,7 +444,7 @@ pub unsafe extern "C" fn luxfer_scene_add_pendants(
         let places = points::<3>(places, count, 1, MAX_PLACES, "place")?;
         let places: Vec<_> = places.into_iter().map(|place| DVec3::from_array(place).as_vec3()).collect();
         let body = pendant.body()?;
-        let bytes = mesh_cost(&body.mesh()) * u64::from(count);
+        let bytes = mesh_cost(&body.mesh()) * count as u64;
         let (mesh, added) = scene.change(bytes, |scene| {
             let mesh = body.add_to_scene(scene, &places, &Placing { diameter, luminance })?;
             Ok((mesh, scene.materials.len() - 1))
@@ -457,11 +457,17 @@ pub unsafe extern "C" fn luxfer_scene_add_pendants(
 
 /// Reads `count` points of `N` coordinates from the caller's memory; an error unless `count` is in `[least, most]`.
 /// `place` may be NULL if `count` is 0.
-fn points<const N: usize>(place: *const f64, count: u32, least: u32, most: u32, name: &str) -> Result<Vec<[f64; N]>> {
+fn points<const N: usize>(
+    place: *const f64,
+    count: usize,
+    least: usize,
+    most: usize,
+    name: &str,
+) -> Result<Vec<[f64; N]>> {
     check_range(&format!("number of {name}s"), count, least, most)?;
     if count == 0 {
         return Ok(Vec::new());
     }
-    let numbers = list(place, N * count as usize, &format!("{name}s"))?;
+    let numbers = list(place, N * count, &format!("{name}s"))?;
     Ok(numbers.chunks_exact(N).map(|point| std::array::from_fn(|k| point[k])).collect())
 }

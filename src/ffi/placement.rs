@@ -120,7 +120,7 @@ pub struct luxfer_placement {
     /// The response computed with cells of twice the width and height, minus the field response, in cd/m² per channel.
     /// About a third of this difference is the error of response that comes from the size of the map's cells. The
     /// difference also contains noise.
-    pub band_error: [f64; 3],
+    pub resolution_difference: [f64; 3],
 }
 
 versioned!(luxfer_placement, [192], {
@@ -133,7 +133,7 @@ versioned!(luxfer_placement, [192], {
         rotation: 0.0,
         response: [0.0; 3],
         half_width: [0.0; 3],
-        band_error: [0.0; 3],
+        resolution_difference: [0.0; 3],
     }
 });
 
@@ -185,7 +185,7 @@ pub unsafe extern "C" fn luxfer_importance_get_placement(
             rotation: best.pose.rotation,
             response: light.mean.to_array(),
             half_width: light.half_width().to_array(),
-            band_error: best.response.band_error.to_array(),
+            resolution_difference: best.response.resolution_difference.to_array(),
             ..luxfer_placement::defaults()
         });
         Ok(())

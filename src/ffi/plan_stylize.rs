@@ -15,10 +15,10 @@ use super::stylize_params::luxfer_stylize_params;
 use crate::plan;
 
 /// Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize.
-/// The plan chooses only the numbers of rounds and sweeps (the fields iterations, coarse_iterations, finest_iterations,
-/// polish and sweeps). The resolution and all other values come from settings, where NULL stands for the defaults.
-/// params gives the goal, a time or an error. If no settings reach the goal, the plan gives the settings that come
-/// nearest to it. The caller releases *job. Any thread.
+/// The plan chooses only the numbers of rounds and search iterations (the fields iterations, coarse_iterations,
+/// finest_iterations, polish and search_iterations). The resolution and all other values come from settings, where NULL
+/// stands for the defaults. params gives the goal, a time or an error. If no settings reach the goal, the plan gives
+/// the settings that come nearest to it. The caller releases *job. Any thread.
 ///
 /// The error is the square root of luxfer_stylize_report.energy: the root mean square difference of matched patches in
 /// colours and guides, whose values are in [0, 1].
@@ -47,8 +47,8 @@ pub unsafe extern "C" fn luxfer_plan_start_stylize(
     })
 }
 
-/// Gets the settings to stylise with: the settings given at the start, except the numbers of rounds and sweeps, which
-/// the plan has chosen. size is sizeof *params. Any thread.
+/// Gets the settings to stylise with: the settings given at the start, except the numbers of rounds and search
+/// iterations, which the plan has chosen. size is sizeof *params. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_get_stylize_params(

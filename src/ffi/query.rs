@@ -49,28 +49,34 @@ pub struct luxfer_hit {
 /// Rays per parallel task.
 const BLOCK: usize = 4096;
 
-/// Finds the nearest hits of count rays; the array hits receives count elements. All surfaces count as opaque and
-/// two-sided. Of hits at equal distance, the hit with the lower index of mesh, then of triangle, is returned. Rays
-/// whose origin or direction is not finite, or whose direction is 0, hit nothing. The first call after a scene is
-/// loaded or changed prepares the scene for tracing, which takes longer. Any thread.
-/// LUXFER_INVALID_ARGUMENT if the scene is not valid: the message names the part that is not valid.
+/// Finds the nearest hits of count rays; the array hits receives count elements. ray_stride and hit_stride are the
+/// distances between elements in bytes; 0: sizeof(luxfer_ray), sizeof(luxfer_hit). Rays and hits may be fields of one
+/// struct. All surfaces count as opaque and two-sided. Of hits at equal distance, the hit with the lower index of mesh,
+/// then of triangle, is returned. Rays whose origin or direction is not finite, or whose direction is 0, hit nothing.
+/// The first call after a scene is loaded or changed prepares the scene for tracing, which takes longer. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a stride is too small or the scene is not valid: the message names the part that is not
+/// valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_intersect(
     scene: *mut luxfer_scene,
     rays: *const luxfer_ray,
     count: usize,
+    ray_stride: usize,
     hits: *mut luxfer_hit,
+    hit_stride: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
         if count == 0 {
             return Ok(());
         }
-        let rays = bytes(rays.cast(), size_of_all::<luxfer_ray>(count)?, "rays")?;
-        let hits = bytes_mut(hits.cast(), size_of_all::<luxfer_hit>(count)?, "hits")?;
+        let (ray_stride, size) = strided::<luxfer_ray>(count, ray_stride, "rays")?;
+        let (hit_stride, hits_size) = strided::<luxfer_hit>(count, hit_stride, "hits")?;
+        bytes_mut(hits.cast(), hits_size, "hits")?;
+        let rays = bytes(rays.cast(), size, "rays")?;
         let world = object.ready_world()?;
         let block = |i: usize| {
-            let block = rays.chunks(BLOCK * size_of::<luxfer_ray>()).nth(i).unwrap_or_default();
-            block.chunks_exact(size_of::<luxfer_ray>()).map(|ray| nearest(&world, ray)).collect::<Vec<_>>()
+            let block = rays.chunks(ray_stride.saturating_mul(BLOCK)).nth(i).unwrap_or_default();
+            block.chunks(ray_stride).map(|ray| nearest(&world, &ray[..size_of::<luxfer_ray>()])).collect::<Vec<_>>()
         };
         // For few rays, waking another thread would take longer than tracing them.
         let blocks = if count <= BLOCK {
@@ -79,8 +85,10 @@ pub unsafe extern "C" fn luxfer_scene_intersect(
             let monitor = object.context().monitor();
             object.context().quick.run(|| exec::map(count.div_ceil(BLOCK), monitor.job(), block))?
         };
-        for (place, hit) in hits.chunks_exact_mut(size_of::<luxfer_hit>()).zip(blocks.into_iter().flatten()) {
-            place.copy_from_slice(bytemuck::cast_slice(&hit));
+        // Each hit is written alone, because rays may lie between the hits.
+        for (i, hit) in blocks.into_iter().flatten().enumerate() {
+            let place = hits.wrapping_byte_add(i * hit_stride);
+            bytes_mut(place.cast(), size_of::<luxfer_hit>(), "hits")?.copy_from_slice(bytemuck::cast_slice(&hit));
         }
         Ok(())
     })
@@ -105,7 +113,17 @@ fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
     }
 }
 
-pub(super) fn size_of_all<T>(count: usize) -> Result<usize> {
-    let size = count.checked_mul(size_of::<T>());
-    size.ok_or_else(|| Error::argument(format!("count is {count}; that is more than the address space holds")))
+/// Returns the stride in bytes of an array of `count` elements, of which 0 stands for the size of an element, and the
+/// size of the array. `count` is not 0.
+pub(super) fn strided<T>(count: usize, stride: usize, name: &str) -> Result<(usize, usize)> {
+    let element = size_of::<T>();
+    let stride = if stride == 0 { element } else { stride };
+    if stride < element {
+        let range = format!("it must be 0 or at least {element} bytes");
+        return Err(Error::argument(format!("the stride of {name} is {stride}; {range}")));
+    }
+    let size = stride.checked_mul(count - 1).and_then(|size| size.checked_add(element));
+    let size =
+        size.ok_or_else(|| Error::argument(format!("count is {count}; that is more than the address space holds")))?;
+    Ok((stride, size))
 }

@@ -67,8 +67,10 @@ versioned!(luxfer_scene_counts, [32], {
 pub struct luxfer_surface {
     /// sizeof(luxfer_surface), set by the function that fills the struct.
     pub struct_size: u32,
+    /// Reserved; always 0.
+    pub reserved: u32,
     /// Number of triangles in the plane.
-    pub triangles: u32,
+    pub triangles: u64,
     /// Corner of the bounding rectangle where u = v = 0, in metres.
     pub origin: [f32; 3],
     /// Unit vector of u, along the first side of the rectangle.
@@ -86,9 +88,10 @@ pub struct luxfer_surface {
     pub sloped_area: f32,
 }
 
-versioned!(luxfer_surface, [72], {
+versioned!(luxfer_surface, [80], {
     Self {
-        struct_size: 72,
+        struct_size: 80,
+        reserved: 0,
         triangles: 0,
         origin: [0.0; 3],
         u_axis: [0.0; 3],
@@ -389,7 +392,7 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
         let out = Report::new(found, size)?;
         let surface = surface::find(&object.snapshot(), text(name, "name")?)?;
         out.set(luxfer_surface {
-            triangles: u32::try_from(surface.triangles.len()).unwrap_or(u32::MAX),
+            triangles: surface.triangles.len() as u64,
             origin: surface.origin.to_array(),
             u_axis: surface.u_axis.to_array(),
             v_axis: surface.v_axis.to_array(),

@@ -113,8 +113,8 @@ pub unsafe extern "C" fn luxfer_scene_read_vertices(
     scene: *mut luxfer_scene,
     index: u32,
     attribute: luxfer_vertex_attribute,
-    capacity: usize,
     values: *mut f32,
+    capacity: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
         let scene = object.snapshot();
@@ -145,8 +145,8 @@ pub unsafe extern "C" fn luxfer_scene_read_vertices(
 pub unsafe extern "C" fn luxfer_scene_read_triangles(
     scene: *mut luxfer_scene,
     index: u32,
-    capacity: usize,
     indices: *mut u32,
+    capacity: usize,
 ) -> luxfer_status {
     enter(scene, |object| {
         let scene = object.snapshot();

@@ -214,8 +214,8 @@ pub unsafe extern "C" fn luxfer_segment_set_region(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_segment_set_strokes(
     segment: *mut luxfer_segment,
-    strokes: *mut luxfer_strokes,
     phase: luxfer_phase,
+    strokes: *mut luxfer_strokes,
 ) -> luxfer_status {
     enter(segment, |stage| {
         let strokes = Painted::copy(stage.context(), strokes, |set| of_phase(set, phase))?;

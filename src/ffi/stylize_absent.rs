@@ -32,7 +32,7 @@ macro_rules! absent {
 }
 
 absent! {
-    luxfer_stylize_params_preset luxfer_stylize_set_artwork luxfer_stylize_add_guide
+    luxfer_stylize_get_preset luxfer_stylize_set_artwork luxfer_stylize_add_guide
     luxfer_stylize_add_guides luxfer_stylize_clear_guides luxfer_stylize_set_source_mask
     luxfer_stylize_set_target_mask luxfer_stylize_set_painted
     luxfer_stylize_set_motion

@@ -27,7 +27,7 @@ pub(super) struct Finished {
     pub guide_rms: f64,
     pub usage: Usage,
     /// Share of the painted pixels that are whole exemplar pixels instead of blends, in `[0, 1]`.
-    pub whole: f64,
+    pub unblended_share: f64,
     pub patch: usize,
     /// Number of non-finite pixels in the exemplar and in the target.
     pub broken: [usize; 2],
@@ -72,7 +72,7 @@ impl Stylised {
                 sources: Arc::new(report.sources),
                 guide_rms,
                 usage: report.usage,
-                whole: report.whole,
+                unblended_share: report.unblended_share,
                 patch: report.patch,
                 broken: [report.broken_source, report.broken_target],
                 warnings,

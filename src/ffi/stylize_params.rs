@@ -44,7 +44,7 @@ pub type luxfer_stylize_search = i32;
 /// PatchMatch (Barnes et al. 2009), the default.
 pub const LUXFER_STYLIZE_SEARCH_PATCHMATCH: luxfer_stylize_search = 0;
 /// A k-d tree over the mean colours and guides of patches.
-pub const LUXFER_STYLIZE_SEARCH_TABLE: luxfer_stylize_search = 1;
+pub const LUXFER_STYLIZE_SEARCH_KD_TREE: luxfer_stylize_search = 1;
 
 /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value.
 pub type luxfer_stylize_vote = i32;
@@ -57,14 +57,14 @@ pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
 pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 /// The artwork pixel that the largest number of overlapping patches put at this pixel. Where two pieces of the artwork
 /// meet, each stays whole up to the seam.
-pub const LUXFER_STYLIZE_VOTE_MOST: luxfer_stylize_vote = 3;
-/// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MOST. The proportion varies, so that each place of the
-/// picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
+pub const LUXFER_STYLIZE_VOTE_MAJORITY: luxfer_stylize_vote = 3;
+/// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MAJORITY. The proportion varies, so that each place of
+/// the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
 /// pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
-/// luxfer_stylize_report.whole is the share of whole pixels.
+/// luxfer_stylize_report.unblended_share is the share of whole pixels.
 pub const LUXFER_STYLIZE_VOTE_ADAPTIVE: luxfer_stylize_vote = 4;
 
-/// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_params_preset. The defaults
+/// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_get_preset. The defaults
 /// stated here belong to LUXFER_STYLIZE_FULL.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -91,18 +91,18 @@ pub struct luxfer_stylize_params {
     /// LUXFER_STYLIZE_MODE_BUDGET each target patch takes its nearest match in these rounds, without the error budget.
     /// In other modes these are additional rounds of that mode.
     pub polish: u32,
-    /// Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1.
-    pub sweeps: u32,
+    /// Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1.
+    pub search_iterations: u32,
     /// Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
     /// default 0.9.
     pub coverage: f32,
     /// Maximum number of matching passes under the error budget in one round (EM iteration), in [1, 1000]; default 6.
     pub passes: u32,
-    /// Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target patch
-    /// may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
+    /// Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration, a
+    /// target patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
     pub settle: u32,
     /// Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between two
-    /// neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the sweeps
+    /// neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the iterations
     /// after each matching; see settle.
     pub seam: f32,
     /// How a pixel is computed from overlapping patches in all rounds but the last: a LUXFER_STYLIZE_VOTE_ value;
@@ -165,7 +165,7 @@ impl luxfer_stylize_params {
             iterations: p.iterations as u32,
             finest_iterations: p.finest_iterations as u32,
             polish: p.polish as u32,
-            sweeps: p.sweeps as u32,
+            search_iterations: p.search_iterations as u32,
             coverage: p.coverage,
             passes: p.passes as u32,
             settle: p.settle as u32,
@@ -197,7 +197,7 @@ impl luxfer_stylize_params {
             iterations: self.iterations as usize,
             finest_iterations: self.finest_iterations as usize,
             polish: self.polish as usize,
-            sweeps: self.sweeps as usize,
+            search_iterations: self.search_iterations as usize,
             coverage: self.coverage,
             passes: self.passes as usize,
             settle: self.settle as usize,
@@ -221,10 +221,10 @@ impl luxfer_stylize_params {
 /// LUXFER_STYLIZE_PAPER. size is sizeof *params. Any thread.
 /// LUXFER_INVALID_ARGUMENT if preset is another value.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_params_preset(
+pub unsafe extern "C" fn luxfer_stylize_get_preset(
     params: *mut luxfer_stylize_params,
-    preset: luxfer_stylize_preset,
     size: usize,
+    preset: luxfer_stylize_preset,
 ) -> luxfer_status {
     guard(|| {
         let place = params::Report::new(params, size)?;

@@ -64,7 +64,7 @@ pub struct luxfer_stylize_report {
     pub broken_target: u64,
     /// Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
     /// LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
-    pub whole: f64,
+    pub unblended_share: f64,
 }
 
 versioned!(luxfer_stylize_report, [72, 80], {
@@ -81,7 +81,7 @@ versioned!(luxfer_stylize_report, [72, 80], {
         guide_error: 0.0,
         broken_source: 0,
         broken_target: 0,
-        whole: 0.0,
+        unblended_share: 0.0,
     }
 });
 
@@ -97,7 +97,7 @@ impl luxfer_stylize_report {
             guide_error: finished.guide_rms,
             broken_source: finished.broken[0] as u64,
             broken_target: finished.broken[1] as u64,
-            whole: finished.whole,
+            unblended_share: finished.unblended_share,
             ..Self::defaults()
         }
     }

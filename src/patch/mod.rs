@@ -4,8 +4,8 @@
 //! §3.3-3.4. It is independent of the meaning of the channels: a [`QuantisedImage`] holds colour and guide channels
 //! multiplied by their weights, so that Eq. 1 is a single sum of squared integer differences, identical to the bit
 //! with and without SIMD. The search is PatchMatch (Barnes et al. 2009) on a fixed grid of tiles that exchange their
-//! borders between sweeps. Its random numbers depend on position only, so the field does not depend on the number of
-//! threads. [`KdTree`] is an alternative search, a k-d tree.
+//! borders between iterations. Its random numbers depend on position only, so the field does not depend on the number
+//! of threads. [`KdTree`] is an alternative search, a k-d tree.
 //!
 //! A patch is identified by its top-left pixel and always lies inside its image: an image of `W × H` pixels has
 //! `(W - w + 1) × (H - w + 1)` patches of width `w`.
@@ -14,7 +14,7 @@
 //! on distances, a quarter on choosing candidates, a seventh on voting, a twentieth on sorting errors. The images of
 //! exemplar and target take 32 bytes per pixel each. Both images are larger than the caches, but a tile of them fits.
 //! If a neighbour's match and a patch's own match continue each other, the neighbour offers no new candidate, so
-//! sweeps become faster as a field becomes more coherent.
+//! iterations become faster as a field becomes more coherent.
 //!
 //! Not modelled: rotated, mirrored, scaled or recoloured patches.
 
@@ -39,7 +39,7 @@ pub use occurrence::Occurrence;
 pub use position::{NONE, pack, unpack};
 pub use pyramid::{halve, halve_mask, level_count, level_size};
 pub use quantised::{QuantisedImage, Quantiser};
-pub use search::{Search, Sweep};
+pub use search::{Search, SearchIteration};
 pub use vote::{VoteMode, origin, vote, whole_share};
 
 /// Maximum side in pixels of an image in which patches are matched: a coordinate fits into half of a `u32`.

@@ -1,9 +1,9 @@
 //! PatchMatch (Barnes et al. 2009): propagation and random search, with results independent of the number of threads.
 //!
-//! The query image is divided into fixed tiles. A sweep visits the patches of each tile forwards and then backwards. A
-//! patch sees the current matches inside its tile, and the matches from before the sweep outside. All tiles are
-//! written back at the end. With usage penalties, however, tiles run one after the other, and each is written back
-//! before the next one starts.
+//! The query image is divided into fixed tiles. An iteration visits the patches of each tile forwards and then
+//! backwards. A patch sees the current matches inside its tile, and the matches from before the iteration outside. All
+//! tiles are written back at the end. With usage penalties, however, tiles run one after the other, and each is written
+//! back before the next one starts.
 
 use super::domain::Domain;
 use super::field::Field;
@@ -28,16 +28,16 @@ pub struct Search<'a> {
     pub allowed: &'a Domain,
     /// Width of a patch in pixels.
     pub patch: usize,
-    /// Usage penalties, updated during [`Search::sweep`], which then processes tiles sequentially on one thread.
+    /// Usage penalties, updated during [`Search::iterate`], which then processes tiles sequentially on one thread.
     pub occurrence: Option<&'a Occurrence>,
     pub kernel: Kernel,
     pub seed: u64,
 }
 
-/// Parameters of a sweep of propagation and random search.
+/// Parameters of an iteration of propagation and random search.
 #[derive(Clone, Copy, Debug)]
-pub struct Sweep {
-    /// Index of this sweep, which seeds its random numbers.
+pub struct SearchIteration {
+    /// Index of this iteration, which seeds its random numbers.
     pub index: u64,
     /// Initial radius in pixels of the random search around the best match; halved until it is 0.
     pub radius: usize,
@@ -108,10 +108,10 @@ impl Search<'_> {
 
     /// Improves the matches of the patches for which `active` holds, by propagation and random search. Without usage
     /// penalties, a match is replaced only by a closer one.
-    pub fn sweep(
+    pub fn iterate(
         &self,
         field: &mut Field,
-        sweep: Sweep,
+        iteration: SearchIteration,
         job: Job,
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
@@ -119,12 +119,12 @@ impl Search<'_> {
             return job.check();
         }
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
-        let key = hash(self.seed, &[sweep.index]);
+        let key = hash(self.seed, &[iteration.index]);
         if self.occurrence.is_some() {
             for t in 0..columns * rows {
                 job.check()?;
                 let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
-                tile.search(self, field, sweep, key, &active);
+                tile.search(self, field, iteration, key, &active);
                 tile.paste(field);
                 job.report((t + 1) as f64 / (columns * rows) as f64);
             }
@@ -132,7 +132,7 @@ impl Search<'_> {
         }
         let tiles = exec::map(columns * rows, job, |t| {
             let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
-            tile.search(self, field, sweep, key, &active).then_some(tile)
+            tile.search(self, field, iteration, key, &active).then_some(tile)
         })?;
         tiles.into_iter().flatten().for_each(|tile| tile.paste(field));
         Ok(())
@@ -182,13 +182,13 @@ impl Tile {
         }
     }
 
-    /// Runs a sweep over the active patches of this tile, forwards and then backwards. Returns whether any patch
+    /// Runs an iteration over the active patches of this tile, forwards and then backwards. Returns whether any patch
     /// needed a search.
     fn search(
         &mut self,
         search: &Search,
         before: &Field,
-        sweep: Sweep,
+        iteration: SearchIteration,
         key: u64,
         active: &(impl Fn(usize) -> bool + Sync),
     ) -> bool {
@@ -218,7 +218,7 @@ impl Tile {
 
             // Random search, in the forward direction only.
             if !backwards {
-                best.search_randomly(search, sweep, Rng::new(key, &[index as u64]));
+                best.search_randomly(search, iteration, Rng::new(key, &[index as u64]));
             }
             if best.cost == total && best.at == self.at[i] {
                 continue;
@@ -277,7 +277,8 @@ impl Tile {
         changed
     }
 
-    /// Returns the match of a patch: inside this tile the current match, outside it the match from before the sweep.
+    /// Returns the match of a patch: inside this tile the current match, outside it the match from before the
+    /// iteration.
     fn neighbour(&self, before: &Field, x: isize, y: isize) -> Option<u32> {
         if x < 0 || y < 0 || x as usize >= before.width || y as usize >= before.height {
             return None;
@@ -306,15 +307,15 @@ impl Best {
     /// Tries uniformly random positions if no match has a known distance yet. Then tries random positions around the
     /// best match, within decreasing radii.
     #[inline(always)]
-    fn search_randomly(&mut self, search: &Search, sweep: Sweep, mut rng: Rng) {
+    fn search_randomly(&mut self, search: &Search, iteration: SearchIteration, mut rng: Rng) {
         if self.cost == u32::MAX {
-            for _ in 0..sweep.initial_samples {
+            for _ in 0..iteration.initial_samples {
                 let members = search.allowed.members();
                 let (px, py) = unpack(members[rng.below(members.len())]);
                 self.try_at(search, px as isize, py as isize);
             }
         }
-        let mut radius = sweep.radius;
+        let mut radius = iteration.radius;
         while radius > 0 && self.at != NONE {
             let (px, py) = unpack(self.at);
             let (bits, span) = (rng.next_u64(), 2 * radius as u64 + 1);

@@ -15,7 +15,8 @@ pub struct Stylisation {
     pub expected: Expected,
 }
 
-/// Plans a stylisation. Changes only the numbers of iterations and sweeps in `params`; ignores `input.previous`.
+/// Plans a stylisation. Changes only the numbers of iterations and search iterations in `params`; ignores
+/// `input.previous`.
 ///
 /// # Errors
 /// A goal or a setting out of range; the errors of [`crate::stylize::run`].
@@ -49,7 +50,7 @@ fn ladder(params: &Params) -> (Vec<Params>, usize) {
         coarse_iterations: like.coarse_iterations,
         finest_iterations: like.finest_iterations,
         polish: like.polish,
-        sweeps: like.sweeps,
+        search_iterations: like.search_iterations,
         ..params.clone()
     };
     let (fast, full) = (Params::fast(), Params::default());

@@ -71,7 +71,7 @@ pub struct Response {
     pub light: Estimate,
     /// The response computed with cells of twice the side, minus `light.mean`. Where the importance is smooth, it is
     /// three times the error that the size of the cells causes, plus noise.
-    pub band_error: DVec3,
+    pub resolution_difference: DVec3,
     measured: Vec<DVec3>,
 }
 
@@ -187,7 +187,7 @@ impl Importance {
         let products = |batch: &Vec<DVec3>| batch.iter().zip(&emission).map(|(i, e)| i * e).sum::<DVec3>();
         let measured: Vec<DVec3> = self.batches.iter().map(products).collect();
         let light = Estimate::of(|b| measured[b]);
-        Ok(Response { light, band_error: self.coarse(&emission) - light.mean, measured })
+        Ok(Response { light, resolution_difference: self.coarse(&emission) - light.mean, measured })
     }
 
     /// Solves for the scale of a texture at which the target is met. Needs no tracing, unlike [`super::run`].

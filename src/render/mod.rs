@@ -139,7 +139,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
     let mut clock = Clock::start(params.time_budget_ms);
     let guided = preview::guided(params);
     let mut accumulator = Accumulator::new(world, camera, &guided)?;
-    let mut plan = AdaptiveSampler::new(params);
+    let mut sampler = AdaptiveSampler::new(params);
     let mut publish_film = |accumulator: &Accumulator, clock: &mut Clock| {
         clock.publish(|| {
             let mut film = accumulator.film(always.job())?;
@@ -149,7 +149,7 @@ pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &
         })
     };
     let (mut published, mut done) = (None, 0.0);
-    while let Some(pass) = plan.next(&accumulator, &clock, job.part(done, done))? {
+    while let Some(pass) = sampler.next(&accumulator, &clock, job.part(done, done))? {
         let next = accumulator.progress(&pass, params.samples).clamp(done, 1.0);
         let cut = clock.sample(|deadline| accumulator.extend(&pass, deadline, job.part(done, next)));
         done = next.max(clock.spent());

@@ -17,13 +17,13 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
-use crate::patch::{Domain, Field, NONE, Search, Sweep, VoteMode, unpack, vote};
+use crate::patch::{Domain, Field, NONE, Search, SearchIteration, VoteMode, unpack, vote};
 
 /// Weight of the guides for patches astride the border, relative to their weight elsewhere. [bench stylit:autocomplete]
 const GUIDES: f32 = 0.1;
-/// `SWEEPS`: number of sweeps of the search for patches astride the border. `RADIUS`: radius of its random search in
-/// pixels.
-const SWEEPS: usize = 2;
+/// `ITERATIONS`: number of iterations of the search for patches astride the border. `RADIUS`: radius of its random
+/// search in pixels.
+const ITERATIONS: usize = 2;
 const RADIUS: usize = 256;
 /// Maximum number of uses of an exemplar patch, as a multiple of the mean number of uses.
 /// [bench stylit:autocomplete]
@@ -66,9 +66,9 @@ impl<'a> Border<'a> {
         self.level.set_picture(picture, job)?;
         let search = self.level.forward();
         search.rescore(field, job, is_astride)?;
-        for k in 0..SWEEPS {
+        for k in 0..ITERATIONS {
             let index = 4000 + 10 * round + k as u64;
-            search.sweep(field, Sweep { index, radius: RADIUS, initial_samples: 8 }, job, is_astride)?;
+            search.iterate(field, SearchIteration { index, radius: RADIUS, initial_samples: 8 }, job, is_astride)?;
         }
         level.forward().rescore(field, job, is_astride)
     }
@@ -96,8 +96,8 @@ pub(super) fn limit_usage(level: &Level, field: &mut Field, job: Job) -> Result<
         // The matches remain as hints, without a distance.
         (0..beyond.len()).filter(|&i| beyond[i]).for_each(|i| field.error[i] = u32::MAX);
         let search = Search { allowed: &free, ..level.forward() };
-        let sweep = Sweep { index: 5000 + round as u64, radius: 64, initial_samples: 8 };
-        search.sweep(field, sweep, job, |i| beyond[i])?;
+        let iteration = SearchIteration { index: 5000 + round as u64, radius: 64, initial_samples: 8 };
+        search.iterate(field, iteration, job, |i| beyond[i])?;
         level.forward().rescore(field, job, |i| beyond[i])?;
     }
     Ok(())

@@ -4,7 +4,7 @@ use super::level::Level;
 use super::params::{Finder, Params};
 use crate::error::Result;
 use crate::job::Job;
-use crate::patch::{Domain, Field, KdTree, Means, Search, Sweep};
+use crate::patch::{Domain, Field, KdTree, Means, Search, SearchIteration};
 
 /// Number of patches of the k-d tree that are compared with each patch. Three times this number takes twice the time
 /// and lowers the energy (StyLit, Eq. 3) by one per cent. [bench stylit]
@@ -13,7 +13,7 @@ const TRIES: usize = 8;
 /// Data that the searches of one iteration share.
 pub(super) struct Nearest<'a> {
     level: &'a Level<'a>,
-    sweeps: usize,
+    search_iterations: usize,
     trees: Option<KdTrees>,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Nearest<'a> {
                 })
             }
         };
-        Ok(Self { level, sweeps: params.sweeps, trees })
+        Ok(Self { level, search_iterations: params.search_iterations, trees })
     }
 
     /// Searches the exemplar for better matches of the target patches. `index` is the number of the call; each call
@@ -53,7 +53,7 @@ impl<'a> Nearest<'a> {
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
         match &self.trees {
-            None => self.sweep(search, field, Sweep { index, radius: 64, initial_samples: 4 }, job, active),
+            None => self.iterate(search, field, SearchIteration { index, radius: 64, initial_samples: 4 }, job, active),
             Some(t) => search.look_up(field, &t.source, &t.target_means, TRIES, job, active),
         }
     }
@@ -69,22 +69,25 @@ impl<'a> Nearest<'a> {
     ) -> Result<()> {
         let search = self.level.reverse(free);
         match &self.trees {
-            None => self.sweep(&search, field, Sweep { index, radius: 32, initial_samples: 2 }, job, active),
+            None => {
+                self.iterate(&search, field, SearchIteration { index, radius: 32, initial_samples: 2 }, job, active)
+            }
             Some(t) => search.look_up(field, &t.target, &t.source_means, TRIES, job, active),
         }
     }
 
-    fn sweep(
+    fn iterate(
         &self,
         search: &Search,
         field: &mut Field,
-        first: Sweep,
+        first: SearchIteration,
         job: Job,
         active: impl Fn(usize) -> bool + Sync,
     ) -> Result<()> {
-        for k in 0..self.sweeps {
-            let job = job.part(k as f64 / self.sweeps as f64, (k + 1) as f64 / self.sweeps as f64);
-            search.sweep(field, Sweep { index: 100 * first.index + k as u64, ..first }, job, &active)?;
+        for k in 0..self.search_iterations {
+            let job =
+                job.part(k as f64 / self.search_iterations as f64, (k + 1) as f64 / self.search_iterations as f64);
+            search.iterate(field, SearchIteration { index: 100 * first.index + k as u64, ..first }, job, &active)?;
         }
         Ok(())
     }

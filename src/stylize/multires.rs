@@ -11,13 +11,13 @@ use super::level::{Level, Problem};
 use super::memory::Memory;
 use super::output::{IntermediateResult, Output, Publish};
 use super::params::{Finder, Input, Mode, Params};
-use super::picture::{DecodeInput, decode, decode_into, paint, restore_known, whole};
+use super::picture::{DecodeInput, decode, decode_into, paint, restore_known, unblended_share};
 use super::report::{LevelReport, Report, Usage, energy, guide_error, sources};
 use super::retrieve::{PassReport, retrieve};
 use crate::error::{Error, Result};
 use crate::image::{Comparison, Image, try_collect};
 use crate::job::Job;
-use crate::patch::{Field, NONE, Occurrence, Search, Sweep, VoteMode, level_count, unpack};
+use crate::patch::{Field, NONE, Occurrence, Search, SearchIteration, VoteMode, level_count, unpack};
 use crate::rng::hash;
 
 /// If there are at most this many pairs of patches, the initial field is found by exhaustive comparison, otherwise by
@@ -243,7 +243,7 @@ fn output(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
         doubts: examine(problem, job)?,
         levels,
         usage,
-        whole: whole(&picture, &field, problem, job)?,
+        unblended_share: unblended_share(&picture, &field, problem, job)?,
         guide_error,
         sources: sources(&field, problem, setup.halved, job)?,
         halvings: setup.halved,
@@ -298,8 +298,13 @@ fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> R
     } else {
         let radius = level.allowed.width.max(level.allowed.height);
         for k in 0..8 {
-            let sweep = Sweep { index: k, radius, initial_samples: 16 };
-            search.sweep(&mut field, sweep, job.part(0.05 + 0.11 * k as f64, 0.05 + 0.11 * (k + 1) as f64), wanted)?;
+            let iteration = SearchIteration { index: k, radius, initial_samples: 16 };
+            search.iterate(
+                &mut field,
+                iteration,
+                job.part(0.05 + 0.11 * k as f64, 0.05 + 0.11 * (k + 1) as f64),
+                wanted,
+            )?;
         }
     }
     Ok(field)

@@ -100,20 +100,20 @@ pub struct Params {
     /// from the result under the budget and let each target patch take its nearest exemplar patch (Wexler et al.
     /// 2007). In the other iterative modes, they only add to `finest_iterations`. \[bench stylit:presets\]
     pub polish: usize,
-    /// PatchMatch sweeps per retrieval, in `[1, 100]`. \[bench stylit:knobs\]
-    pub sweeps: usize,
+    /// PatchMatch iterations per search for nearest patches, in `[1, 100]`. \[bench stylit:knobs\]
+    pub search_iterations: usize,
     /// Share of the target patches that are matched under the budget, in `[0, 1]`. All other target patches are then
     /// matched without the budget. \[bench stylit:knobs\]
     pub coverage: f32,
     /// Maximum number of retrieval passes per iteration, in `[1, 1000]`. \[bench stylit:knobs\]
     pub passes: usize,
-    /// Propagation sweeps after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if the
+    /// Propagation iterations after a retrieval, in `[0, 100]`: a target patch may continue a neighbour's match if the
     /// continued match is closer than the patch's own match. With 0, the paper's assignment is unchanged.
     /// \[bench stylit:knobs\]
     pub settle: usize,
-    /// Cost of a seam in the sweeps of `settle`, as a share of the mean error, in `[0, 100]`. A seam lies between two
-    /// neighbouring target patches whose matches are not neighbours in the exemplar. Values up to 3 change the guide
-    /// error by less than the seed does (docs/notes/stylize.md). \[bench stylit\]
+    /// Cost of a seam in the iterations of `settle`, as a share of the mean error, in `[0, 100]`. A seam lies between
+    /// two neighbouring target patches whose matches are not neighbours in the exemplar. Values up to 3 change the
+    /// guide error by less than the seed does (docs/notes/stylize.md). \[bench stylit\]
     pub seam: f32,
     pub vote: VoteMode,
     /// The vote that forms the final picture from the final field.
@@ -150,7 +150,7 @@ impl Default for Params {
             coarse_iterations: 24,
             finest_iterations: 1,
             polish: 3,
-            sweeps: 1,
+            search_iterations: 1,
             coverage: 0.9,
             passes: 6,
             settle: 2,
@@ -167,15 +167,15 @@ impl Default for Params {
 }
 
 impl Params {
-    /// The paper's settings: six iterations and sweeps, plain averages, and no propagation after the assignment under
-    /// the budget (`settle` = 0).
+    /// The paper's settings: six iterations and search iterations, plain averages, and no propagation after the
+    /// assignment under the budget (`settle` = 0).
     pub fn paper() -> Self {
         Self {
             coarse_guides: 1.0,
             coarse_iterations: 6,
             finest_iterations: 6,
             polish: 0,
-            sweeps: 6,
+            search_iterations: 6,
             coverage: 0.95,
             passes: 64,
             settle: 0,
@@ -208,14 +208,14 @@ impl Params {
         check_range("coarse_iterations", self.coarse_iterations, 1, 100)?;
         check_range("finest_iterations", self.finest_iterations, 1, 100)?;
         check_range("polish", self.polish, 0, 100)?;
-        check_range("sweeps", self.sweeps, 1, 100)?;
+        check_range("search_iterations", self.search_iterations, 1, 100)?;
         check_range("coverage", self.coverage, 0.0, 1.0)?;
         check_range("settle", self.settle, 0, 100)?;
         check_range("seam", self.seam, 0.0, 100.0)?;
         check_range("coherence", self.coherence, 0.0, 1.0)?;
         if self.mode == Mode::Occurrence && self.finder == Finder::KdTree {
             return Err(Error::argument(
-                "mode is occurrence and search is table; with this mode it must be PatchMatch",
+                "mode is occurrence and search is k-d tree; with this mode, search must be PatchMatch",
             ));
         }
         check_range("match_appearance", self.match_appearance, 0.0, 1.0)?;

@@ -22,8 +22,8 @@ pub(super) fn paint(
     Ok(())
 }
 
-/// Returns the share of whole exemplar pixels in a picture: see `Report::whole`.
-pub(super) fn whole(picture: &Image, field: &Field, problem: &Problem, job: Job) -> Result<f64> {
+/// Returns the share of whole exemplar pixels in a picture: see `Report::unblended_share`.
+pub(super) fn unblended_share(picture: &Image, field: &Field, problem: &Problem, job: Job) -> Result<f64> {
     let is_made = |i: usize| problem.target_mask.as_ref().is_none_or(|mask| mask[i]);
     whole_share(picture, field, &problem.style, problem.patch, job, is_made)
 }

@@ -42,7 +42,7 @@ pub struct Report {
     pub usage: Usage,
     /// Of the pixels painted by a vote, the share that are whole exemplar pixels, in `[0, 1]`; the others are blends of
     /// exemplar pixels.
-    pub whole: f64,
+    pub unblended_share: f64,
     /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides
     /// of the exemplar pixel painted there, in `[0, 1]`. It is high where no part of the exemplar is suitable (Fig.
     /// 17).

@@ -68,7 +68,7 @@ fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
         let flat = Image::from_fn(w, h, |_, _| [0.3]).unwrap();
         let output = stylise(&input(&art, &[guide(&flat, &flat)]), &Params::default()).unwrap();
         assert!(output.image == art);
-        assert_eq!(output.report.whole, 1.0);
+        assert_eq!(output.report.unblended_share, 1.0);
     }
 }
 
@@ -104,7 +104,7 @@ fn rough_paint_stays_whole_and_smooth_paint_is_blended() {
     .unwrap();
     let whole = |art: &Image, final_vote| {
         let params = Params { final_vote, ..Params::default() };
-        stylise(&input(art, &[guide(&a, &b)]), &params).unwrap().report.whole
+        stylise(&input(art, &[guide(&a, &b)]), &params).unwrap().report.unblended_share
     };
     let rough = artwork(&a);
     let [kept, blended] = [&rough, &smooth].map(|art| whole(art, VoteMode::Adaptive));

@@ -13,7 +13,7 @@ use super::report::sources;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_vec};
 use crate::job::Job;
-use crate::patch::{Field, NONE, Sweep, halve, halve_mask, unpack};
+use crate::patch::{Field, NONE, SearchIteration, halve, halve_mask, unpack};
 
 /// Number of iterations of matching and voting after a change.
 const ROUNDS: usize = 2;
@@ -154,8 +154,8 @@ fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params,
         level.set_picture(picture, part(0.0, 0.05))?;
         let search = level.forward();
         search.rescore(field, part(0.0, 0.2), |i| concerned[i])?;
-        let sweep = Sweep { index: round as u64, radius: SEARCH_RADIUS, initial_samples: 4 };
-        search.sweep(field, sweep, part(0.2, 0.8), |i| concerned[i])?;
+        let iteration = SearchIteration { index: round as u64, radius: SEARCH_RADIUS, initial_samples: 4 };
+        search.iterate(field, iteration, part(0.2, 0.8), |i| concerned[i])?;
         let vote_mode = if round + 1 == ROUNDS { params.final_vote } else { params.vote };
         paint(picture, field, problem, vote_mode, part(0.8, 1.0), |i| old[i])?;
         // Fade out the step at the border of the painted part, if the first run has done so.

@@ -238,7 +238,7 @@ class Loader:
         needs = abi.luxfer_requirements()
         # A scene that loads may still be unfit for tracing: the calls may fail, but only with a status.
         start = time.monotonic()
-        check(seed, library.luxfer_scene_intersect(thing, rays, 2, (abi.luxfer_hit * 2)()), start)
+        check(seed, library.luxfer_scene_intersect(thing, rays, 2, 0, (abi.luxfer_hit * 2)(), 0), start)
         check(seed, library.luxfer_scene_get_requirements(thing, 0.01, ctypes.byref(needs), ctypes.sizeof(needs)), start)
         check(seed, library.luxfer_scene_export_memory(thing, abi.luxfer_write_fn(lambda user, data, size: 0), None), start)
         library.luxfer_release(thing)

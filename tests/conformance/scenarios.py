@@ -117,19 +117,19 @@ def scenes() -> Scenario:
     s.call("scene_get_camera", scene, 0, *report("camera_params"))
     s.call("scene_add_light", scene, struct("light_params", position=array("float", 0, 1, 0)), ROOM)
     rays = array("float", 0, 1, 0, 0, -1, 0, 9, 0, 1, 0, 0, 0, 0, 9)
-    s.call("scene_intersect", scene, rays, 2, ROOM)
+    s.call("scene_intersect", scene, rays, 2, 0, ROOM, 0)
     s.call("scene_get_requirements", scene, 0.01, *report("requirements"))
     s.call("scene_get_requirements_text", scene, ROOM, 300, ROOM)
     s.call("scene_get_mesh", scene, 0, *report("mesh_info"))
     s.call("scene_get_mesh_name", scene, 0, ROOM, 20, ROOM)
-    s.call("scene_read_vertices", scene, 0, 0, 4, ROOM)
-    s.call("scene_read_triangles", scene, 0, 2, ROOM)
+    s.call("scene_read_vertices", scene, 0, 0, ROOM, 4)
+    s.call("scene_read_triangles", scene, 0, ROOM, 2)
     coloured = struct(
         "mesh_params", name="Coloured", vertex_count=3, positions=array("float", 0, 0, 0, 1, 0, 0, 0, 1, 0), triangle_count=1,
         indices=array("uint32_t", 0, 1, 2), colours=array("float", *[0.5] * 12),
     )  # fmt: skip
     s.call("scene_add_mesh", scene, coloured, None)
-    s.call("scene_read_vertices", scene, 2, 4, 3, ROOM)
+    s.call("scene_read_vertices", scene, 2, 4, ROOM, 3)
     s.call("scene_place_emission", scene, "Ceiling", image, 9.0, 9.0, 9.0, ROOM, ROOM)
     s.make("demo_create_scene", s.context, 2)
     return s
@@ -186,7 +186,7 @@ def photo() -> Scenario:
     s.call("strokes_add_text", painted, "plane 2 5 5 9 9\n")
     s.call("strokes_add", painted, 0, array("float", 2, 2, 9, 20), 2, 2.0, 1)
     s.call("strokes_add", painted, 0, array("float", 40, 2, 42, 20), 2, 2.0, 0)
-    s.call("segment_set_strokes", segment, painted, 0)
+    s.call("segment_set_strokes", segment, 0, painted)
     s.run("segment_start", segment, struct("segment_params"))
     s.make("segment_get_image", segment, 0)
     s.call("segment_get_report", segment, *report("segment_report"))
@@ -213,7 +213,7 @@ def emission() -> Scenario:
     s.call("emission_get_corner", stage, 0, 0, ROOM, ROOM)
     s.call("emission_clear_styles", stage)
     s.call("emission_add_style", stage, unwarped, light, valid, unwarped, array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1), 1.0, s.image(2, 2, 1, 0.5))
-    s.run("emission_start_plan", stage, struct("emission_params", width=48, height=40))
+    s.run("emission_start_composition", stage, struct("emission_params", width=48, height=40))
     s.make("emission_render_tile", stage, 16, 8, 20, 30)
     return s
 
@@ -308,7 +308,7 @@ def photometry() -> Scenario:
     s.call("colour_to_temperature", s.context, 1.0, 0.9, 0.7, ROOM, ROOM)
     s.call("temperature_to_colour", s.context, 3000.0, 0.0, ROOM)
     s.call("image_get_glare", s.image(32, 24), 1.0, 0.0, *report("glare_report"))
-    s.call("scene_get_glare", s.make("scene_create", s.context), array("float", 0, 0, 0, 0, 0, 1), 1, 16, 1, ROOM)
+    s.call("scene_get_glare", s.make("scene_create", s.context), array("float", 0, 0, 0, 0, 0, 1), 1, 0, 16, 1, ROOM, 0)
     s.make("image_false_colour", s.image(32, 24), struct("false_colour_params", maximum=2.0))
     led, white = array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0.8), array("double", 0.5, 0.4, 0.3)
     s.call("mix_primaries", s.context, led, 4, 1.0, white, ROOM, *report("mixture"))
@@ -370,7 +370,7 @@ def transfer() -> Scenario:
     s.call("transfer_use_features", stage, features)
     segment = s.make("segment_create", s.context)
     s.call("segment_set_features", segment, s.make("features_get_image", features, 0))
-    s.call("segment_set_strokes", segment, s.painted(strokes), 0)
+    s.call("segment_set_strokes", segment, 0, s.painted(strokes))
     s.run("segment_start", segment, struct("segment_params"))
     s.call("transfer_use_segment", stage, 0, segment)
     s.call("transfer_use_mask", stage, 1, s.make("transfer_get_image", stage, 1))
@@ -427,7 +427,7 @@ def stylisation() -> Scenario:
     s.call("stylize_add_guides", stage, *guides, 0, 1.0)
     s.call("stylize_set_source_mask", stage, s.image(24, 16, 1, 2.0))
     s.call("stylize_set_target_mask", stage, s.image(24, 16, 1, 2.0), None)
-    s.call("stylize_params_preset", struct("stylize_params"), 0, 104)
+    s.call("stylize_get_preset", struct("stylize_params"), 104, 0)
     s.run("stylize_start", stage, struct("stylize_params", keep_for_update=1))
     s.run("stylize_update", stage, artwork, s.image(24, 16, 1, 1.0))
     s.make("stylize_get_image", stage, 0)

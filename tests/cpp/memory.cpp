@@ -196,11 +196,11 @@ int main() {
     const auto emission = luxfer::Emission::create(context);
     starve("texture", 192, [&] {
         plane.set_features(features.image(LUXFER_FEATURES_CHANNELS));
-        plane.set_strokes(luxfer::Strokes::from_image(strokes), LUXFER_PHASE_PLANE);
+        plane.set_strokes(LUXFER_PHASE_PLANE, luxfer::Strokes::from_image(strokes));
         plane.start().wait();
         lights.set_features(features.image(LUXFER_FEATURES_CHANNELS));
         lights.set_region(plane.image(LUXFER_SEGMENT_MASK));
-        lights.set_strokes(luxfer::Strokes::from_image(strokes), LUXFER_PHASE_LIGHTS);
+        lights.set_strokes(LUXFER_PHASE_LIGHTS, luxfer::Strokes::from_image(strokes));
         luxfer::SegmentParams colour;
         colour.channels = 7;
         lights.start(colour).wait();

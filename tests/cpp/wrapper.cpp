@@ -509,7 +509,7 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(features.set_view(rectify), LUXFER_NOT_READY);
     CHECK_ERROR(segment.image(LUXFER_SEGMENT_MASK), LUXFER_NOT_READY);
     CHECK_ERROR(emission.corner(0, 0), LUXFER_NOT_READY);
-    CHECK_ERROR(emission.start_plan(), LUXFER_INVALID_OPERATION);
+    CHECK_ERROR(emission.start_composition(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(emission.render_tile(0, 0, 1, 1), LUXFER_NOT_READY);
     CHECK_ERROR(emission.add_style(Image(), Image(), Image(), 1, Image()), LUXFER_INVALID_ARGUMENT);
     OK(emission.clear_styles());
@@ -547,9 +547,9 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(strokes.add("plane one"), LUXFER_FORMAT);
     CHECK_ERROR(luxfer::Strokes::create(context, 0, 7), LUXFER_INVALID_ARGUMENT);
     CHECK_ERROR(luxfer::Strokes::from_image(Image()), LUXFER_INVALID_ARGUMENT);
-    OK(segment.set_strokes(strokes, LUXFER_PHASE_PLANE));
+    OK(segment.set_strokes(LUXFER_PHASE_PLANE, strokes));
     OK(segment.set_features(new_image(context)));
-    CHECK_ERROR(segment.set_strokes(strokes, LUXFER_PHASE_PLANE), LUXFER_INVALID_ARGUMENT);
+    CHECK_ERROR(segment.set_strokes(LUXFER_PHASE_PLANE, strokes), LUXFER_INVALID_ARGUMENT);
 }
 
 } // namespace

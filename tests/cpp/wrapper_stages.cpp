@@ -74,13 +74,13 @@ void lighting_transfer(const Context &context) {
     const auto plane = copied(luxfer::Segment::create(context));
     plane.set_features(channels);
     const auto drawn = luxfer::Strokes::from_image(strokes);
-    plane.set_strokes(drawn, LUXFER_PHASE_PLANE);
+    plane.set_strokes(LUXFER_PHASE_PLANE, drawn);
     plane.start().wait();
     CHECK(plane.report().positive_samples > 0);
     const auto lights = luxfer::Segment::create(context);
     lights.set_features(channels);
     lights.set_region(plane.image(LUXFER_SEGMENT_MASK));
-    lights.set_strokes(drawn, LUXFER_PHASE_LIGHTS);
+    lights.set_strokes(LUXFER_PHASE_LIGHTS, drawn);
     luxfer::SegmentParams colour;
     colour.channels = 7;
     lights.start(colour).wait();
@@ -116,7 +116,7 @@ void lighting_transfer(const Context &context) {
     emission.add_style(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID), 1, nowhere);
     emission.clear_styles();
     emission.add_style(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID), photo, view.to_photo, 2, nowhere);
-    emission.start_plan(texture).wait();
+    emission.start_composition(texture).wait();
     const Image tile = emission.render_tile(40, 10, 30, 20);
     CHECK(has_size(tile, 30, 20, 4));
 
@@ -176,7 +176,7 @@ void lighting_transfer(const Context &context) {
         }
         CHECK_STATUS(beyond, LUXFER_NOT_FOUND);
     }
-    CHECK(lists[4].count() == 0); // An emission that was only planned (start_plan) has no warnings.
+    CHECK(lists[4].count() == 0); // An emission that was only composed (start_composition) has no warnings.
 
     const auto plan = luxfer::Plan::create(context);
     luxfer::PlanParams budget;

@@ -74,7 +74,7 @@ class Transfer(Case):
         features.set_strokes(strokes)
         features.run()
         plane = luxfer.Segment(context(), features.image())
-        plane.set_strokes(strokes, "plane")
+        plane.set_strokes("plane", strokes)
         plane.run()
         transfer = luxfer.Transfer(context(), photo)
         transfer.set_strokes(strokes)
@@ -84,7 +84,7 @@ class Transfer(Case):
 
         lights = luxfer.Segment(context(), features.image())
         lights.set_region(plane.image())
-        lights.set_strokes(strokes, "lights")
+        lights.set_strokes("lights", strokes)
         lights.run(channels=7)
         view.set_mask(plane.image())
         view.run(max_side=256)
@@ -123,7 +123,7 @@ class Transfer(Case):
         segment, lines = luxfer.Segment(context(), face), luxfer.Strokes(context(), 80, 60)
         for y, positive in ((5, True), (20, True), (40, False), (50, False)):
             lines.add("plane", [(5, y), (45, y)], radius=2, positive=positive)
-        segment.set_strokes(lines, "plane")
+        segment.set_strokes("plane", lines)
         segment.run()
         unseen = [w for w in segment.warnings if w.code == luxfer.types.WarningCode.UNSEEN]
         self.assertEqual([w.stage for w in unseen], [luxfer.types.Stage.PLANE])
@@ -131,7 +131,7 @@ class Transfer(Case):
         x, y = unseen[0].place
         self.assertTrue(50 < x < 80 and y < 30, unseen[0])
         lines.add("plane", [(x, y)], radius=2, positive=True)
-        segment.set_strokes(lines, "plane")
+        segment.set_strokes("plane", lines)
         self.assertNotIn(luxfer.types.WarningCode.UNSEEN, [w.code for w in segment.run().warnings])
 
         # Each stage has a list of warnings.
@@ -164,7 +164,7 @@ class Transfer(Case):
         whole = emission.run(width=150, height=130).image().numpy()
         mask = emission.image("mask").numpy()
         lamps, lit = emission.luminaires, emission.report.exemplar_lamps
-        emission.start_plan(width=150, height=130).wait()
+        emission.start_composition(width=150, height=130).wait()
         self.assertEqual(emission.report.exemplar_lamps, lit)
         planned = {lamp.centre: lamp.area for lamp in emission.luminaires}
         self.assertEqual(planned, {lamp.centre: lamp.area for lamp in lamps})
@@ -197,14 +197,14 @@ class Transfer(Case):
         ):
             segment, strokes = luxfer.Segment(context(), photo), luxfer.Strokes(context(), 60, 40)
             describe(strokes)
-            segment.set_strokes(strokes, "plane")
+            segment.set_strokes("plane", strokes)
             strokes.clear()  # the stage has a copy
             masks.append(segment.run().image("mask").numpy()[..., 0])
             self.assertTrue((masks[-1][:20] == 1).all() and (masks[-1][20:] == 0).all())
         np.testing.assert_array_equal(*masks)
         with self.assertRaises(errors.FormatError):
             strokes.add_text("plane 3 5")
-        segment.set_strokes(None, "plane")
+        segment.set_strokes("plane", None)
         with self.assertRaises(errors.Degenerate):
             segment.run()
         with self.assertRaisesRegex(errors.InvalidArgument, "strokes are for 40 x 60 pixels"):
@@ -491,10 +491,10 @@ class Stylisation(Case):
         stylize = luxfer.Stylize(context(), artwork)
         stylize.add_guides(self.ball, self.still, "materials")
         stylize.run()
-        self.assertGreater(stylize.report.whole, 0.1)
-        self.assertLess(stylize.report.whole, 1)
-        stylize.run(final_vote="most")
-        self.assertEqual(stylize.report.whole, 1)
+        self.assertGreater(stylize.report.unblended_share, 0.1)
+        self.assertLess(stylize.report.unblended_share, 1)
+        stylize.run(final_vote="majority")
+        self.assertEqual(stylize.report.unblended_share, 1)
         picture, sources = stylize.image().numpy(), stylize.image("sources").numpy().astype(int)
         self.assertEqual(picture.shape, (48, 64, 3))
         # This final vote copies pixels, so every colour of the picture occurs in the artwork.

@@ -45,7 +45,7 @@ public:
 
     /// Sets the dimming levels of the lamps' drivers, as factors of the emission; empty means continuous dimming.
     Result<> set_levels(const std::vector<double> &levels) const {
-        return call(luxfer_lamps_set_levels, levels.data(), static_cast<std::uint32_t>(levels.size()));
+        return call(luxfer_lamps_set_levels, levels.data(), levels.size());
     }
 
     Result<> clear_goals() const { return call(luxfer_lamps_clear_goals); }
@@ -165,10 +165,10 @@ inline Result<std::vector<luxfer_pendant>> find_pendants(const Context &context,
                                                          const luxfer_pendants_params &params = PendantsParams()) {
     std::vector<luxfer_pendant> lamps(LUXFER_MAX_PENDANTS);
     const double *places = suspensions.empty() ? nullptr : suspensions.data()->data();
-    std::uint32_t count = 0;
+    std::size_t count = 0;
     const luxfer_status status = luxfer_pendants_find(
-        context.get(), photo.get(), mask.get(), view.get(), places, static_cast<std::uint32_t>(suspensions.size()),
-        &params, lamps.data(), sizeof(luxfer_pendant), static_cast<std::uint32_t>(lamps.size()), &count);
+        context.get(), photo.get(), mask.get(), view.get(), places, suspensions.size(), &params, lamps.data(),
+        sizeof(luxfer_pendant), lamps.size(), &count);
     lamps.resize(count);
     return detail::finish(context.get(), status, std::move(lamps));
 }
@@ -186,8 +186,8 @@ inline Result<PlacedPendants> add_pendants(const Scene &scene, const luxfer_pend
     PlacedPendants placed;
     const double *tops = places.empty() ? nullptr : places.data()->data();
     const luxfer_status status =
-        luxfer_scene_add_pendants(scene.get(), &pendant, tops, static_cast<std::uint32_t>(places.size()), diameter,
-                                  luminance, &placed.first_mesh, &placed.material);
+        luxfer_scene_add_pendants(scene.get(), &pendant, tops, places.size(), diameter, luminance,
+                                  &placed.first_mesh, &placed.material);
     return detail::finish(scene.context().get(), status, placed);
 }
 
@@ -216,7 +216,7 @@ inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span
                                                         std::uint32_t samples = 4096, std::uint64_t seed = 1) {
     std::vector<luxfer_observer_glare> ratings(observers.size());
     const luxfer_status status =
-        luxfer_scene_get_glare(scene.get(), observers.data(), observers.size(), samples, seed, ratings.data());
+        luxfer_scene_get_glare(scene.get(), observers.data(), observers.size(), 0, samples, seed, ratings.data(), 0);
     return detail::finish(scene.context().get(), status, std::move(ratings));
 }
 
@@ -247,8 +247,8 @@ inline Result<Mixture> mix_primaries(const Context &context, const std::vector<s
     for (const auto &primary : primaries) flat.insert(flat.end(), primary.begin(), primary.end());
     Mixture mixture = {std::vector<double>(primaries.size()), {}};
     const luxfer_status status =
-        luxfer_mix_primaries(context.get(), flat.data(), static_cast<std::uint32_t>(primaries.size()), max_drive,
-                             colour.data(), mixture.drives.data(), &mixture.light, sizeof mixture.light);
+        luxfer_mix_primaries(context.get(), flat.data(), primaries.size(), max_drive, colour.data(),
+                             mixture.drives.data(), &mixture.light, sizeof mixture.light);
     return detail::finish(context.get(), status, std::move(mixture));
 }
 

@@ -135,8 +135,8 @@ public:
     Result<> set_region(const Image &region) const { return call(luxfer_segment_set_region, region.get()); }
 
     /// Sets the strokes and selects those of phase, a LUXFER_PHASE_ value; empty means none.
-    Result<> set_strokes(const Strokes &strokes, luxfer_phase phase) const {
-        return call(luxfer_segment_set_strokes, strokes.get(), phase);
+    Result<> set_strokes(luxfer_phase phase, const Strokes &strokes) const {
+        return call(luxfer_segment_set_strokes, phase, strokes.get());
     }
 
     Result<Job> start(const luxfer_segment_params &params = SegmentParams()) const {
@@ -184,11 +184,11 @@ public:
     }
     Result<> clear_styles() const { return call(luxfer_emission_clear_styles); }
 
-    /// Starts a job that plans a texture; render_tile then renders any part of it.
-    Result<Job> start_plan(const luxfer_emission_params &params = EmissionParams()) const {
-        return make<Job>(luxfer_emission_start_plan, &params);
+    /// Starts a job that composes a texture; render_tile then renders any part of it.
+    Result<Job> start_composition(const luxfer_emission_params &params = EmissionParams()) const {
+        return make<Job>(luxfer_emission_start_composition, &params);
     }
-    /// Renders a part of the planned texture. The image has four channels: RGB, and a mask that is 1 on lamps.
+    /// Renders a part of the composed texture. The image has four channels: RGB, and a mask that is 1 on lamps.
     Result<Image> render_tile(std::uint32_t x, std::uint32_t y, std::uint32_t width, std::uint32_t height) const {
         return make<Image>(luxfer_emission_render_tile, x, y, width, height);
     }

@@ -186,7 +186,7 @@ public:
     Result<> intersect(Span<const luxfer_ray> rays, Span<luxfer_hit> hits) const {
         if (rays.size() != hits.size())
             return detail::fail<void>(Error(LUXFER_INVALID_ARGUMENT, "there must be as many hits as rays"));
-        return call(luxfer_scene_intersect, rays.data(), rays.size(), hits.data());
+        return call(luxfer_scene_intersect, rays.data(), rays.size(), 0, hits.data(), 0);
     }
 
     /// The features that the scene requires of a renderer. Its field bounces is the number of bounces beyond
@@ -213,12 +213,12 @@ public:
     Result<> read_vertices(std::uint32_t index, luxfer_vertex_attribute attribute, Span<float> values) const {
         const bool is_uv = attribute == LUXFER_VERTEX_UV_0 || attribute == LUXFER_VERTEX_UV_1;
         const std::size_t numbers = is_uv ? 2 : attribute == LUXFER_VERTEX_COLOUR ? 4 : 3;
-        return call(luxfer_scene_read_vertices, index, attribute, values.size() / numbers, values.data());
+        return call(luxfer_scene_read_vertices, index, attribute, values.data(), values.size() / numbers);
     }
 
     /// Copies the vertex indices of the triangles, three per triangle.
     Result<> read_triangles(std::uint32_t index, Span<std::uint32_t> indices) const {
-        return call(luxfer_scene_read_triangles, index, indices.size() / 3, indices.data());
+        return call(luxfer_scene_read_triangles, index, indices.data(), indices.size() / 3);
     }
 
     Result<luxfer_material_params> material(std::uint32_t index) const {

@@ -166,8 +166,8 @@ LUXFER_LAW_FREE = 5
 LUXFER_LAW_COPY = 6
 LUXFER_EMISSION_TEXTURE = 0
 LUXFER_EMISSION_MASK = 1
-LUXFER_EMISSION_EXEMPLAR_METADATA = 2
-LUXFER_EMISSION_METADATA = 3
+LUXFER_EMISSION_EXEMPLAR_GUIDES = 2
+LUXFER_EMISSION_GUIDES = 3
 LUXFER_QUANTITY_OUTGOING = 0
 LUXFER_QUANTITY_INCIDENT = 1
 LUXFER_FIT_MEAN = 0
@@ -294,11 +294,11 @@ LUXFER_STYLIZE_MODE_GREEDY = 3
 LUXFER_STYLIZE_MODE_LIT_SPHERE = 4
 LUXFER_STYLIZE_MODE_OCCURRENCE = 5
 LUXFER_STYLIZE_SEARCH_PATCHMATCH = 0
-LUXFER_STYLIZE_SEARCH_TABLE = 1
+LUXFER_STYLIZE_SEARCH_KD_TREE = 1
 LUXFER_STYLIZE_VOTE_PLAIN = 0
 LUXFER_STYLIZE_VOTE_WEIGHTED = 1
 LUXFER_STYLIZE_VOTE_NEAREST = 2
-LUXFER_STYLIZE_VOTE_MOST = 3
+LUXFER_STYLIZE_VOTE_MAJORITY = 3
 LUXFER_STYLIZE_VOTE_ADAPTIVE = 4
 LUXFER_GUIDES_WITH_NORMALS = 1
 LUXFER_GUIDES_WITH_EDGES = 2
@@ -490,7 +490,8 @@ class luxfer_surface(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("triangles", c_uint32),
+        ("reserved", c_uint32),
+        ("triangles", c_uint64),
         ("origin", c_float * 3),
         ("u_axis", c_float * 3),
         ("v_axis", c_float * 3),
@@ -703,7 +704,6 @@ class luxfer_candidate(Structure):
         ("struct_size", c_uint32),
         ("kind", c_int32),
         ("index", c_uint32),
-        ("triangles", c_uint32),
         ("area", c_float),
         ("level_area", c_float),
         ("height", c_float),
@@ -711,7 +711,7 @@ class luxfer_candidate(Structure):
         ("high", c_float),
         ("normal", c_float * 3),
         ("score", c_float),
-        ("reserved", c_uint32),
+        ("triangles", c_uint64),
         ("name", c_char_p),
         ("reason", c_char_p),
     ]
@@ -870,7 +870,7 @@ class luxfer_emission_params(Structure):
         ("block", c_uint32),
         ("scale", c_double),
         ("working_side", c_uint32),
-        ("metadata_weight", c_float),
+        ("guide_weight", c_float),
         ("seed", c_uint64),
         ("min_regularity", c_float),
         ("whole_lamps", c_uint32),
@@ -891,7 +891,7 @@ class luxfer_emission_params(Structure):
 
 class luxfer_emission_report(Structure):
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
-    quality. A plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error
+    quality. A plan (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error
     is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe
     the first one."""
 
@@ -1215,7 +1215,7 @@ class luxfer_importance_report(Structure):
         ("paths", c_uint32),
         ("response", c_double * 3),
         ("half_width", c_double * 3),
-        ("band_error", c_double * 3),
+        ("resolution_difference", c_double * 3),
     ]
     result = types.ImportanceReport
 
@@ -1253,7 +1253,7 @@ class luxfer_placement(Structure):
         ("rotation", c_double),
         ("response", c_double * 3),
         ("half_width", c_double * 3),
-        ("band_error", c_double * 3),
+        ("resolution_difference", c_double * 3),
     ]
     result = types.Placement
 
@@ -1440,7 +1440,7 @@ class luxfer_stylize_params(Structure):
         ("iterations", c_uint32),
         ("finest_iterations", c_uint32),
         ("polish", c_uint32),
-        ("sweeps", c_uint32),
+        ("search_iterations", c_uint32),
         ("coverage", c_float),
         ("passes", c_uint32),
         ("settle", c_uint32),
@@ -1477,7 +1477,7 @@ class luxfer_stylize_report(Structure):
         ("guide_error", c_double),
         ("broken_source", c_uint64),
         ("broken_target", c_uint64),
-        ("whole", c_double),
+        ("unblended_share", c_double),
     ]
     result = types.StylizeReport
 
@@ -1646,13 +1646,13 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_distribution_get_intensity": (c_int32, [("distribution", POINTER(luxfer_distribution)), ("c", c_double), ("gamma", c_double), ("candela", POINTER(c_double))]),
     "luxfer_scene_add_light": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_light_params)), ("index", POINTER(c_uint32))]),
     "luxfer_scene_add_luminaire": (c_int32, [("scene", POINTER(luxfer_scene)), ("distribution", POINTER(luxfer_distribution)), ("params", POINTER(luxfer_luminaire_params)), ("index", POINTER(c_uint32))]),
-    "luxfer_scene_intersect": (c_int32, [("scene", POINTER(luxfer_scene)), ("rays", POINTER(luxfer_ray)), ("count", c_size_t), ("hits", POINTER(luxfer_hit))]),
+    "luxfer_scene_intersect": (c_int32, [("scene", POINTER(luxfer_scene)), ("rays", POINTER(luxfer_ray)), ("count", c_size_t), ("ray_stride", c_size_t), ("hits", POINTER(luxfer_hit)), ("hit_stride", c_size_t)]),
     "luxfer_scene_get_requirements": (c_int32, [("scene", POINTER(luxfer_scene)), ("error", c_float), ("requirements", POINTER(luxfer_requirements)), ("size", c_size_t)]),
     "luxfer_scene_get_requirements_text": (c_int32, [("scene", POINTER(luxfer_scene)), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_scene_get_mesh": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("info", POINTER(luxfer_mesh_info)), ("size", c_size_t)]),
     "luxfer_scene_get_mesh_name": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_scene_read_vertices": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("attribute", c_int32), ("capacity", c_size_t), ("values", POINTER(c_float))]),
-    "luxfer_scene_read_triangles": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("capacity", c_size_t), ("indices", POINTER(c_uint32))]),
+    "luxfer_scene_read_vertices": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("attribute", c_int32), ("values", POINTER(c_float)), ("capacity", c_size_t)]),
+    "luxfer_scene_read_triangles": (c_int32, [("scene", POINTER(luxfer_scene)), ("index", c_uint32), ("indices", POINTER(c_uint32)), ("capacity", c_size_t)]),
     "luxfer_scene_get_candidates": (c_int32, [("scene", POINTER(luxfer_scene)), ("candidates", POINTER(POINTER(luxfer_candidates)))]),
     "luxfer_candidates_get_count": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("count", POINTER(c_uint32))]),
     "luxfer_candidates_get": (c_int32, [("candidates", POINTER(luxfer_candidates)), ("index", c_uint32), ("candidate", POINTER(luxfer_candidate)), ("size", c_size_t)]),
@@ -1693,7 +1693,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_segment_create": (c_int32, [("context", POINTER(luxfer_context)), ("segment", POINTER(POINTER(luxfer_segment)))]),
     "luxfer_segment_set_features": (c_int32, [("segment", POINTER(luxfer_segment)), ("features", POINTER(luxfer_image))]),
     "luxfer_segment_set_region": (c_int32, [("segment", POINTER(luxfer_segment)), ("region", POINTER(luxfer_image))]),
-    "luxfer_segment_set_strokes": (c_int32, [("segment", POINTER(luxfer_segment)), ("strokes", POINTER(luxfer_strokes)), ("phase", c_int32)]),
+    "luxfer_segment_set_strokes": (c_int32, [("segment", POINTER(luxfer_segment)), ("phase", c_int32), ("strokes", POINTER(luxfer_strokes))]),
     "luxfer_segment_start": (c_int32, [("segment", POINTER(luxfer_segment)), ("params", POINTER(luxfer_segment_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_segment_get_image": (c_int32, [("segment", POINTER(luxfer_segment)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_segment_get_report": (c_int32, [("segment", POINTER(luxfer_segment)), ("report", POINTER(luxfer_segment_report)), ("size", c_size_t)]),
@@ -1707,7 +1707,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_emission_get_corner": (c_int32, [("emission", POINTER(luxfer_emission)), ("index", c_uint32), ("corner", c_uint32), ("x", POINTER(c_double)), ("y", POINTER(c_double))]),
     "luxfer_emission_add_style": (c_int32, [("emission", POINTER(luxfer_emission)), ("unwarped", POINTER(luxfer_image)), ("light", POINTER(luxfer_image)), ("valid", POINTER(luxfer_image)), ("photo", POINTER(luxfer_image)), ("to_photo", POINTER(c_double)), ("scale", c_double), ("weights", POINTER(luxfer_image))]),
     "luxfer_emission_clear_styles": (c_int32, [("emission", POINTER(luxfer_emission))]),
-    "luxfer_emission_start_plan": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_emission_start_composition": (c_int32, [("emission", POINTER(luxfer_emission)), ("params", POINTER(luxfer_emission_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_emission_render_tile": (c_int32, [("emission", POINTER(luxfer_emission)), ("x", c_uint32), ("y", c_uint32), ("width", c_uint32), ("height", c_uint32), ("tile", POINTER(POINTER(luxfer_image)))]),
     "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
     "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
@@ -1752,7 +1752,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("red", c_float), ("green", c_float), ("blue", c_float), ("weight", c_double)]),
     "luxfer_lamps_add_grid": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("grid", POINTER(luxfer_illuminance_grid)), ("lux", c_float), ("weight", c_double)]),
     "luxfer_lamps_set_constraint": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
-    "luxfer_lamps_set_levels": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("levels", POINTER(c_double)), ("count", c_uint32)]),
+    "luxfer_lamps_set_levels": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("levels", POINTER(c_double)), ("count", c_size_t)]),
     "luxfer_lamps_clear_goals": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
     "luxfer_lamps_get_report": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("report", POINTER(luxfer_lamps_report)), ("size", c_size_t)]),
     "luxfer_lamps_get_lamp": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("index", c_uint32), ("lamp", POINTER(luxfer_lamp)), ("size", c_size_t)]),
@@ -1771,21 +1771,21 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_colour_to_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
     "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
-    "luxfer_scene_get_glare": (c_int32, [("scene", POINTER(luxfer_scene)), ("observers", POINTER(luxfer_observer)), ("count", c_size_t), ("samples", c_uint32), ("seed", c_uint64), ("ratings", POINTER(luxfer_observer_glare))]),
+    "luxfer_scene_get_glare": (c_int32, [("scene", POINTER(luxfer_scene)), ("observers", POINTER(luxfer_observer)), ("count", c_size_t), ("observer_stride", c_size_t), ("samples", c_uint32), ("seed", c_uint64), ("ratings", POINTER(luxfer_observer_glare)), ("rating_stride", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_uint32), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
+    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_size_t), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),
     "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset)), ("size", c_size_t)]),
     "luxfer_preset_get_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_pendants_find": (c_int32, [("context", POINTER(luxfer_context)), ("photo", POINTER(luxfer_image)), ("mask", POINTER(luxfer_image)), ("view", POINTER(luxfer_rectify)), ("suspensions", POINTER(c_double)), ("suspension_count", c_uint32), ("params", POINTER(luxfer_pendants_params)), ("pendants", POINTER(luxfer_pendant)), ("size", c_size_t), ("capacity", c_uint32), ("count", POINTER(c_uint32))]),
-    "luxfer_scene_add_pendants": (c_int32, [("scene", POINTER(luxfer_scene)), ("pendant", POINTER(luxfer_pendant)), ("places", POINTER(c_double)), ("count", c_uint32), ("diameter", c_float), ("luminance", c_float), ("first_mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
+    "luxfer_pendants_find": (c_int32, [("context", POINTER(luxfer_context)), ("photo", POINTER(luxfer_image)), ("mask", POINTER(luxfer_image)), ("view", POINTER(luxfer_rectify)), ("suspensions", POINTER(c_double)), ("suspension_count", c_size_t), ("params", POINTER(luxfer_pendants_params)), ("pendants", POINTER(luxfer_pendant)), ("size", c_size_t), ("capacity", c_size_t), ("count", POINTER(c_size_t))]),
+    "luxfer_scene_add_pendants": (c_int32, [("scene", POINTER(luxfer_scene)), ("pendant", POINTER(luxfer_pendant)), ("places", POINTER(c_double)), ("count", c_size_t), ("diameter", c_float), ("luminance", c_float), ("first_mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
     "luxfer_guides_set_scene": (c_int32, [("guides", POINTER(luxfer_guides)), ("scene", POINTER(luxfer_scene))]),
     "luxfer_guides_start": (c_int32, [("guides", POINTER(luxfer_guides)), ("params", POINTER(luxfer_guides_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_guides_get_image": (c_int32, [("guides", POINTER(luxfer_guides)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_guides_get_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("previous", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_stylize_params_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("preset", c_int32), ("size", c_size_t)]),
+    "luxfer_stylize_get_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("size", c_size_t), ("preset", c_int32)]),
     "luxfer_stylize_create": (c_int32, [("context", POINTER(luxfer_context)), ("stylize", POINTER(POINTER(luxfer_stylize)))]),
     "luxfer_stylize_set_artwork": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("artwork", POINTER(luxfer_image))]),
     "luxfer_stylize_add_guide": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("name", c_char_p), ("source", POINTER(luxfer_image)), ("target", POINTER(luxfer_image)), ("weight", c_float), ("range", c_int32)]),

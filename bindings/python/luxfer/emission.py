@@ -89,12 +89,12 @@ class Emission(StageBase):
         """Removes all added exemplars."""
         self._call("clear_styles")
 
-    def start_plan(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
-        """Starts a job that plans a texture; tile() then renders any part of it."""
-        return self._job("start_plan", _params.fill(_abi.luxfer_emission_params, params, []))
+    def start_composition(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
+        """Starts a job that composes a texture; tile() then renders any part of it."""
+        return self._job("start_composition", _params.fill(_abi.luxfer_emission_params, params, []))
 
     def tile(self, x: int, y: int, width: int, height: int) -> Image:
-        """Renders a part of the planned texture: an image with four channels, RGB and a mask that is 1 on lamps."""
+        """Renders a part of the composed texture: an image with four channels, RGB and a mask that is 1 on lamps."""
         return self._get_image("render_tile", x, y, width, height)
 
     def start(self, **params: Unpack[EmissionParams]) -> Job[Emission]:
@@ -106,7 +106,7 @@ class Emission(StageBase):
         return self.start(**params).wait(progress)
 
     def image(self, which: EmissionImage | str = EmissionImage.TEXTURE) -> Image:
-        """An image of the results: "texture", "mask", "exemplar-metadata" or "metadata"."""
+        """An image of the results: "texture", "mask", "exemplar-guides" or "guides"."""
         return self._get_image("get_image", _params.member(EmissionImage, which))
 
     @property
@@ -116,7 +116,7 @@ class Emission(StageBase):
 
     @property
     def warnings(self) -> list[StageWarning]:
-        """Reasons to doubt the texture; a plan has none."""
+        """Reasons to doubt the texture; a composition has none."""
         return warnings_of(self)
 
     @property

@@ -46,7 +46,7 @@ def find_pendants(
     if hooks.size and (hooks.ndim != 2 or hooks.shape[1] != 2):
         raise ValueError(f"suspensions has the shape (n, 2), not {hooks.shape}")
     place = _arrays.pointer(hooks, ctypes.c_double) if hooks.size else None
-    capacity, count = _abi.LUXFER_MAX_PENDANTS, ctypes.c_uint32()
+    capacity, count = _abi.LUXFER_MAX_PENDANTS, ctypes.c_size_t()
     lamps = (_abi.luxfer_pendant * capacity)()
     images = image_of(context, photo), image_of(context, mask)
     size = ctypes.sizeof(_abi.luxfer_pendant)

@@ -307,12 +307,12 @@ class Scene(Handle):
             "colours": (_abi.LUXFER_VERTEX_COLOUR, 4, info.has_colours),
         }
         out: dict[str, NDArray[Any]] = {"indices": np.empty((info.triangle_count, 3), np.uint32)}
-        self._call("read_triangles", index, info.triangle_count, _arrays.pointer(out["indices"], ctypes.c_uint32))
+        self._call("read_triangles", index, _arrays.pointer(out["indices"], ctypes.c_uint32), info.triangle_count)
         for name, (attribute, numbers, exists) in attributes.items():
             if exists:
                 out[name] = np.empty((info.vertex_count, numbers), np.float32)
                 pointer = _arrays.pointer(out[name], ctypes.c_float)
-                self._call("read_vertices", index, attribute, info.vertex_count, pointer)
+                self._call("read_vertices", index, attribute, pointer, info.vertex_count)
         return out
 
     # -- questions
@@ -329,7 +329,7 @@ class Scene(Handle):
         rays[:, :3], rays[:, 3:6], rays[:, 6] = start, towards, t_max
         hits = np.empty(len(rays), HIT)
         pointer = _arrays.pointer(rays, _abi.luxfer_ray)
-        self._call("intersect", pointer, len(rays), _arrays.pointer(hits, _abi.luxfer_hit))
+        self._call("intersect", pointer, len(rays), 0, _arrays.pointer(hits, _abi.luxfer_hit), 0)
         return hits
 
     def glare(
@@ -348,7 +348,7 @@ class Scene(Handle):
         ratings = np.empty(len(observers), GLARE)
         pointer = _arrays.pointer(observers, _abi.luxfer_observer)
         out = _arrays.pointer(ratings, _abi.luxfer_observer_glare)
-        self._call("get_glare", pointer, len(observers), samples, seed, out)
+        self._call("get_glare", pointer, len(observers), 0, samples, seed, out, 0)
         return ratings
 
     def requirements(self, error: float = 0.01) -> Requirements:

@@ -24,7 +24,7 @@ class Segment(StageBase):
     """Segments a photo by strokes. To improve the result, set more strokes and run again.
 
     >>> segment = Segment(context, Features(context, photo).run().image())
-    >>> segment.set_strokes(strokes, "plane")
+    >>> segment.set_strokes("plane", strokes)
     >>> segment.run(seed=3).image("mask").size[2]
     1
     """
@@ -44,7 +44,7 @@ class Segment(StageBase):
         """Restricts the segmentation to pixels where the mask is 1. None means the whole image."""
         self._call("set_region", None if region is None else image_of(self._context, region))
 
-    def set_strokes(self, strokes: Strokes | ImageLike | None, phase: Phase | str) -> None:
+    def set_strokes(self, phase: Phase | str, strokes: Strokes | ImageLike | None) -> None:
         """Sets the strokes and selects those for the "plane" or for the "lights". A drawing is converted by
         Strokes.from_image. None means no strokes."""
         set_strokes(self, strokes, _params.member(Phase, phase))

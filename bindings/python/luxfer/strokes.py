@@ -71,7 +71,7 @@ class Strokes(Handle):
 
 
 def set_strokes(stage: Handle, strokes: Strokes | ImageLike | None, *arguments: Any) -> None:
-    """Calls luxfer_<stage>_set_strokes; converts a drawing to strokes first."""
+    """Calls luxfer_<stage>_set_strokes; converts a drawing to strokes first. The strokes are the last argument."""
     if strokes is not None and not isinstance(strokes, Strokes):
         strokes = Strokes.from_image(stage.context, strokes)
-    stage._call("set_strokes", strokes, *arguments)
+    stage._call("set_strokes", *arguments, strokes)

@@ -407,15 +407,15 @@ class EmissionImage(IntEnum):
     """The texture: linear RGB, where 1 is the photo's white; 0 outside lamps."""
     MASK = 1
     """The mask of the texture: 1 on lamps, else 0; 1 channel."""
-    EXEMPLAR_METADATA = 2
+    EXEMPLAR_GUIDES = 2
     """The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at
     the reduced resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light.
     Channels 1 and 2 are the x and y distances from the pixel to the nearest lit pixel, positive to the right
     and down, divided by a length L and clamped to [-1, 1]. L is the side of a patch or, if the lights have
     periods, half the longer period if that is shorter."""
-    METADATA = 3
+    GUIDES = 3
     """The guide channels of the texture, at the same reduced resolution: pixels of
-    EmissionImage.EXEMPLAR_METADATA, copied with the patches that give the texture its colours."""
+    EmissionImage.EXEMPLAR_GUIDES, copied with the patches that give the texture its colours."""
 
 
 class Constraint(IntEnum):
@@ -823,7 +823,7 @@ class StylizeSearch(IntEnum):
 
     PATCHMATCH = 0
     """PatchMatch (Barnes et al. 2009), the default."""
-    TABLE = 1
+    KD_TREE = 1
     """A k-d tree over the mean colours and guides of patches."""
 
 
@@ -837,14 +837,14 @@ class StylizeVote(IntEnum):
     NEAREST = 2
     """Of the overlapping patches' colours, the colour that is nearest to their mean, so that every colour
     occurs in the artwork."""
-    MOST = 3
+    MAJORITY = 3
     """The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork
     meet, each stays whole up to the seam."""
     ADAPTIVE = 4
-    """A blend of StylizeVote.PLAIN and StylizeVote.MOST. The proportion varies, so that each place of the
+    """A blend of StylizeVote.PLAIN and StylizeVote.MAJORITY. The proportion varies, so that each place of the
     picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has
     whole pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
-    StylizeReport.whole is the share of whole pixels."""
+    StylizeReport.unblended_share is the share of whole pixels."""
 
 
 class StylizePreset(IntEnum):
@@ -1409,8 +1409,6 @@ class Candidate:
     """CandidateKind."""
     index: int
     """Index of the object's first mesh in the scene, or index of the material."""
-    triangles: int
-    """Number of triangles whose area is not 0."""
     area: float
     """Area of all triangles in m²."""
     level_area: float
@@ -1431,6 +1429,8 @@ class Candidate:
     floor area of the scene's bounding box in m², and h = (height - lowest y of the scene) / (height of the
     scene). A name with a word for a ceiling, such as "ceiling" or "Decke", raises the score to (1 + s) / 2,
     unless level_area is 0."""
+    triangles: int
+    """Number of triangles whose area is not 0."""
     name: str
     """Name of the object or material, in zero-terminated UTF-8. The string lives as long as the
     luxfer_candidates."""
@@ -1666,8 +1666,8 @@ class EmissionParams(TypedDict, total=False):
     working_side: int
     """Length in pixels to which the longest side of the exemplar is reduced for the synthesis, in [16, 2048];
     default 256."""
-    metadata_weight: float
-    """Weight of the guide channels (EmissionImage.EXEMPLAR_METADATA) relative to colour when patches are
+    guide_weight: float
+    """Weight of the guide channels (EmissionImage.EXEMPLAR_GUIDES) relative to colour when patches are
     compared, in [0, 1e3]; default 1. 0: patches are compared by colour only, as in image quilting."""
     seed: int
     """Seed of the synthesis; default 1."""
@@ -1716,7 +1716,7 @@ class EmissionParams(TypedDict, total=False):
 @dataclass(frozen=True)
 class EmissionReport:
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
-    quality. A plan (luxfer_emission_start_plan) has no texels yet, so its error is NaN and its sampling_error
+    quality. A composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error
     is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe
     the first one."""
 
@@ -1725,7 +1725,7 @@ class EmissionReport:
     error: float
     """Largest relative difference between texture and exemplar in three statistics: the share of lit area, the
     area of whole lamps, and the distance from a lamp to its nearest neighbour. The value 0.1 stands for 10 %.
-    It means little if exemplar_lamps is small. NaN for a plan."""
+    It means little if exemplar_lamps is small. NaN for a composition."""
     regularity: float
     """Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period, and of two
     periods the lower value. 0 if the lights have no period, or if the period was found from the distances
@@ -1740,7 +1740,7 @@ class EmissionReport:
     ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with
     those of parts of the texture that are as large as the exemplar. If error is at most twice this value, it
     does not indicate a bad texture. 0 for EmissionLaw.WHOLE and EmissionLaw.COPY, for several exemplars, for a
-    plan, and if the texture is hardly larger than the exemplar."""
+    composition, and if the texture is hardly larger than the exemplar."""
     law: EmissionLaw
     """The law (rule) by which the texture continues the lights: EmissionLaw."""
     runner_up: EmissionLaw
@@ -2166,7 +2166,7 @@ class ImportanceReport:
     """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
-    band_error: tuple[float, float, float]
+    resolution_difference: tuple[float, float, float]
     """The response that cells of twice the width and height would give, minus the field response, in cd/m². The
     error that comes from the size of the cells is about a third of this difference, which also contains
     noise."""
@@ -2219,7 +2219,7 @@ class Placement:
     """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
-    band_error: tuple[float, float, float]
+    resolution_difference: tuple[float, float, float]
     """The response computed with cells of twice the width and height, minus the field response, in cd/m² per
     channel. About a third of this difference is the error of response that comes from the size of the map's
     cells. The difference also contains noise."""
@@ -2484,8 +2484,8 @@ class StylizeParams(TypedDict, total=False):
     """Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
     StylizeMode.BUDGET each target patch takes its nearest match in these rounds, without the error budget. In
     other modes these are additional rounds of that mode."""
-    sweeps: int
-    """Number of PatchMatch sweeps in one search for nearest patches, in [1, 100]; default 1."""
+    search_iterations: int
+    """Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1."""
     coverage: float
     """Share of the target that is matched under the error budget before the rest is matched without it, in [0,
     1]; default 0.9."""
@@ -2493,12 +2493,12 @@ class StylizeParams(TypedDict, total=False):
     """Maximum number of matching passes under the error budget in one round (EM iteration), in [1, 1000];
     default 6."""
     settle: int
-    """Number of sweeps after each matching, in [0, 100]; default 2; the paper has 0. In such a sweep, a target
+    """Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration, a target
     patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams."""
     seam: float
     """Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between
     two neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the
-    sweeps after each matching; see settle."""
+    iterations after each matching; see settle."""
     vote: StylizeVote | str | int
     """How a pixel is computed from overlapping patches: StylizeVote; default StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
@@ -2562,7 +2562,7 @@ class StylizeReport:
     """Number of exemplar pixels that were not used because a value is not finite."""
     broken_target: int
     """Number of target pixels with a guide value that is not finite and was taken as 0."""
-    whole: float
+    unblended_share: float
     """Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
     StylizeVote.ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it."""
 

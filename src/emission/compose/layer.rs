@@ -338,12 +338,12 @@ impl<'a> PatternPlacement<'a> {
     /// Quilts the texture: finds the part of the exemplar that each part of the texture shows.
     fn place_patches(&self, exemplar: &Exemplar, metadata: &Image, job: Job) -> Result<PatchMap> {
         let &Self { params, law, canvas, .. } = self;
-        let Params { metadata_weight, candidates, .. } = *params;
+        let Params { guide_weight, candidates, .. } = *params;
         let working = &exemplar.working;
         let lamps = &exemplar.components.list;
         let lit = lamps.iter().map(|lamp| lamp.area).sum::<usize>() as f64;
         let lamp = lit / lamps.len() as f64 / working.pitch.element_product();
-        let guide = Guide { working, metadata, metadata_weight, cap: self.cap, lamp, candidates };
+        let guide = Guide { working, metadata, guide_weight, cap: self.cap, lamp, candidates };
 
         // For a row of lamps, quilt one strip along the row, as wide as the exemplar. Then repeat the strip side by
         // side over the texture, because the exemplar does not show what lies beside the strip.

@@ -73,7 +73,7 @@ impl<'a> Comparison<'a> {
         // metadata then differ by √(1/6) pixel each (root mean square). The error from both is
         // 2 · (1/6) · weight / cap² = weight / (3 cap²).
         let slack = match is_lattice {
-            true => (f64::from(guide.metadata_weight) / (3.0 * guide.cap.powi(2))) as f32,
+            true => (f64::from(guide.guide_weight) / (3.0 * guide.cap.powi(2))) as f32,
             false => 0.0,
         };
         Ok(Self {

@@ -15,7 +15,7 @@ pub type Feature = [Vec4; 2];
 pub struct Guide<'a> {
     pub working: &'a Working,
     pub metadata: &'a Image,
-    pub metadata_weight: f32,
+    pub guide_weight: f32,
     /// `cap`: the metadata contain distances divided by `cap`, clamped to [-1, 1]. `lamp`: mean area of a lamp. Both
     /// are in working pixels, the pixels at the reduced size of the synthesis.
     pub cap: f64,
@@ -36,7 +36,7 @@ impl Guide<'_> {
 
     /// The factors of the colour channels and of the metadata channels (confidence, distances) in a feature.
     fn scales(&self) -> (f32, f32) {
-        ((1.0f32 / 3.0).sqrt(), self.metadata_weight.sqrt())
+        ((1.0f32 / 3.0).sqrt(), self.guide_weight.sqrt())
     }
 
     /// The period of each metadata channel (confidence, x and y distance to the nearest light) of a feature. Values

@@ -66,7 +66,7 @@ fn a_dot_product_with_the_map_equals_tracing() {
             let direct_error = direct.half_width[c] / direct.scale[c] * direct.response[c] / 2.04;
             let sigma = response.light.standard_error[c].hypot(direct_error);
             let off = (response.light.mean[c] - direct.response[c]).abs();
-            let allowed = 4.0 * sigma + response.band_error[c].abs();
+            let allowed = 4.0 * sigma + response.resolution_difference[c].abs();
             assert!(off < allowed, "channel {c}: {response:?} {direct:?}");
             // The allowed difference must be small; otherwise the test could never fail.
             assert!(allowed < 0.1 * direct.response[c], "{allowed} {}", direct.response[c]);
@@ -112,11 +112,14 @@ fn cells_limit_the_band() {
     let job = Monitor::default();
     let respond = |cells| map(&scene, cells, 0.005).respond(&texture, &Mat3::IDENTITY, job.job()).unwrap();
     let (coarse, fine) = (respond(4), respond(32));
-    assert!(fine.band_error.abs().max_element() < coarse.band_error.abs().max_element());
+    assert!(fine.resolution_difference.abs().max_element() < coarse.resolution_difference.abs().max_element());
     for c in 0..3 {
         let off = (coarse.light.mean[c] - fine.light.mean[c]).abs();
         let sigma = coarse.light.standard_error[c].hypot(fine.light.standard_error[c]);
-        assert!(off < 4.0 * sigma + coarse.band_error[c].abs() + fine.band_error[c].abs(), "{coarse:?} {fine:?}");
+        assert!(
+            off < 4.0 * sigma + coarse.resolution_difference[c].abs() + fine.resolution_difference[c].abs(),
+            "{coarse:?} {fine:?}"
+        );
     }
 }
 

@@ -136,7 +136,7 @@ def unseen(transfer: Transfer, strokes: Strokes, plane: Pixels) -> dict[str, Pix
     parts: Any = (("plane", {}), ("lights", {"channels": 7}))
     for name, settings in parts:
         segment = Segment(transfer.context, features)
-        segment.set_strokes(strokes, name)
+        segment.set_strokes(name, strokes)
         if name == "lights":
             segment.set_region(plane)
         try:

@@ -71,7 +71,7 @@ class LiveMasks:
         masks: dict[str, luxfer.Image] = {}
         for phase in ("plane", "lights"):
             segment = luxfer.Segment(self.context, features)
-            segment.set_strokes(strokes, phase)
+            segment.set_strokes(phase, strokes)
             if phase == "lights":
                 segment.set_region(masks["plane"])
             try:
