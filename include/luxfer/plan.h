@@ -38,9 +38,9 @@ typedef struct luxfer_plan luxfer_plan;
 typedef struct luxfer_plan_params {
     /** sizeof(luxfer_plan_params), set by luxfer_plan_params_init. */
     uint32_t struct_size;
-    /** Time for all planned work in milliseconds, in [1, 1e9]; 0, the default: the goal is target_error. */
+    /** Time for all planned work in milliseconds, in [1, 1e9]; 0 (the default) if the goal is target_error. */
     uint32_t time_budget_ms;
-    /** Error of the picture, or of the stylisation, in [1e-5, 1]; 0, the default: the goal is time_budget_ms. */
+    /** Error of the picture, or of the stylisation, in [1e-5, 1]; 0 (the default) if the goal is time_budget_ms. */
     float target_error;
     /** Must be 0. */
     uint32_t reserved;

@@ -451,7 +451,7 @@ typedef struct luxfer_fixture {
 /** The mask of the emissive texture: 1 on lamps, else 0; 1 channel. */
 #define LUXFER_TRANSFER_EMISSION_MASK 8
 
-/** The scene in its new light: linear RGB in cd/m²; in its current state while the rendering runs. */
+/** The scene in its new light: linear RGB in cd/m²; while the rendering runs, the picture so far. */
 #define LUXFER_TRANSFER_RENDER 9
 
 /** Variance of the rendering, as LUXFER_RENDER_VARIANCE; 3 channels. */

@@ -192,7 +192,7 @@ impl<'a> Reinsertion<'a> {
 }
 
 /// A pair of siblings beside which the subtree may be placed. The second number is the index of the first sibling. The
-/// first number is the gain at these positions before the area of the new parent is subtracted.
+/// first number is the decrease of the total half area at these positions, with the box of the new parent left out.
 type Candidate = (f32, u32);
 
 /// The search for the best position of one subtree.
@@ -205,8 +205,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Examines all positions beside `node` or below it. `gained` is the gain of a position beside `node` before the
-    /// area of the new parent is subtracted.
+    /// Examines all positions beside `node` or below it. `gained` is the decrease of the total half area of all boxes
+    /// if the subtree moves beside `node`, with the box of the new parent left out.
     fn search_subtree(&mut self, gained: f32, node: u32) {
         self.try_sibling_of(gained, node);
         while let Some((gained, first)) = self.candidates.pop() {

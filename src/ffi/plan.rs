@@ -40,9 +40,9 @@ pub struct luxfer_plan {
 pub struct luxfer_plan_params {
     /// sizeof(luxfer_plan_params), set by luxfer_plan_params_init.
     pub struct_size: u32,
-    /// Time for all planned work in milliseconds, in [1, 1e9]; 0, the default: the goal is target_error.
+    /// Time for all planned work in milliseconds, in [1, 1e9]; 0 (the default) if the goal is target_error.
     pub time_budget_ms: u32,
-    /// Error of the picture, or of the stylisation, in [1e-5, 1]; 0, the default: the goal is time_budget_ms.
+    /// Error of the picture, or of the stylisation, in [1e-5, 1]; 0 (the default) if the goal is time_budget_ms.
     pub target_error: f32,
     /// Must be 0.
     pub reserved: u32,

@@ -43,7 +43,7 @@ pub const LUXFER_TRANSFER_UNWARPED_VALID: luxfer_transfer_image = 6;
 pub const LUXFER_TRANSFER_EMISSION: luxfer_transfer_image = 7;
 /// The mask of the emissive texture: 1 on lamps, else 0; 1 channel.
 pub const LUXFER_TRANSFER_EMISSION_MASK: luxfer_transfer_image = 8;
-/// The scene in its new light: linear RGB in cd/m²; in its current state while the rendering runs.
+/// The scene in its new light: linear RGB in cd/m²; while the rendering runs, the picture so far.
 pub const LUXFER_TRANSFER_RENDER: luxfer_transfer_image = 9;
 /// Variance of the rendering, as LUXFER_RENDER_VARIANCE; 3 channels.
 pub const LUXFER_TRANSFER_RENDER_VARIANCE: luxfer_transfer_image = 10;

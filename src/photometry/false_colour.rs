@@ -92,7 +92,7 @@ fn oklab_to_linear(lightness: f32, a: f32, b: f32) -> Vec3 {
 }
 
 /// Renders the image in false colour, as linear RGB. Images with three channels are shown by their luminance, images
-/// with one channel by their values.
+/// with one channel by their values. If `params.bar` is set, the result is wider than the image by [`bar_width`].
 ///
 /// # Errors
 /// An invalid range of values; no value above 0 although the range is to be taken from the image.

@@ -70,8 +70,8 @@ impl Strength {
         Ok(Self { seconds_per_path: seconds / trials / f64::from(TRIAL), half_width: (squares / trials).sqrt() })
     }
 
-    /// Returns how the error that the solution contributes to a picture of the given contrast falls with the time for
-    /// the solution.
+    /// Returns a curve over the seconds spent on the solution: the squared error that the solution adds to a picture of
+    /// the given contrast.
     pub fn curve(&self, contrast: f64) -> Curve {
         let [min_seconds, max_seconds] = SOLUTION_PATHS.map(|paths| paths * self.seconds_per_path);
         Curve::of_independent(

@@ -36,12 +36,13 @@ const PER_OBSERVATION: f64 = 5.0;
 /// residuals show only a share of the noise variance, and this share depends on the noise itself. [bench vp]
 ///
 /// - `NOISE_ROUNDS`: number of rounds, each of which estimates first the share and then the noise.
-/// - `MIN_SHOWN`: minimum of the share.
-/// - `MIN_SLOPE`: minimum of the biweight's expected slope. With a smaller value, the covariance of some vanishing
-///   points of the development sets becomes so large that they are rejected, although they are right: their short
-///   lines are more precise than their residuals suggest.
-///
-/// Below these minima, the noise exceeds the limit and cannot be estimated.
+/// - `MIN_SHOWN`: a smaller share is replaced by this. The share is this small if the standard deviation of the noise
+///   is 1.1 times the biweight's limit. If the noise is larger, the residuals within the limit hardly change with it,
+///   so they cannot show its size.
+/// - `MIN_SLOPE`: a smaller expected slope of the biweight is replaced by this. The slope is this small if the standard
+///   deviation of the noise is half the limit. The covariance grows with the inverse square of the slope. If
+///   `MIN_SLOPE` were lower, some correct vanishing points of the development sets would be rejected for their large
+///   covariance: their short lines are more precise than their residuals suggest.
 const NOISE_ROUNDS: usize = 5;
 const MIN_SHOWN: f64 = 0.25;
 const MIN_SLOPE: f64 = 0.3;

@@ -47,7 +47,8 @@ pub struct Doubts {
     pub ambiguous_at: Option<[usize; 2]>,
 }
 
-/// The blocks of the exemplar whose guides are even.
+/// The blocks of the exemplar within which the guides are nearly constant: they deviate from their mean by at most
+/// [`EQUAL`].
 struct Blocks {
     side: usize,
     /// Number of channels of the guides.
@@ -147,8 +148,8 @@ impl Blocks {
     }
 }
 
-/// Returns column and row, mean guides and mean paint of a block; `None` if its guides are uneven, or if it contains a
-/// pixel that may not be used.
+/// Returns column and row, mean guides and mean paint of a block. `None` if the guides within the block deviate from
+/// their mean by more than [`EQUAL`], or if the block contains a pixel that may not be used.
 fn block(at: [usize; 2], side: usize, problem: &Problem, roots: &[f32]) -> Option<([usize; 2], Vec<f32>, [f32; 4])> {
     let (style, source) = (&problem.style, &problem.guides.source);
     let columns = at[0] * side..(at[0] + 1) * side;

@@ -263,8 +263,8 @@ fn extremes_have_an_answer() {
     };
     for mode in MODES {
         let params = Params { mode, ..Params::default() };
-        // Targets and exemplars may have one pixel, be thinner than a patch, and be much larger or smaller than the
-        // other.
+        // Test images of one pixel, images thinner than a patch, and images much larger or smaller than the other
+        // image. Each is first the target, then the exemplar.
         for (w, h) in [(1, 1), (1, 40), (3, 2), (5, 5), (150, 4)] {
             let b = scene(w, h, 2.0, 2.0, 3.0);
             finite(stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap());

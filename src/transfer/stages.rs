@@ -287,8 +287,8 @@ impl Transfer {
 }
 
 impl Results {
-    /// Forgets the corrections that the lamps led to: restores the view found from lines, and clears the lamps beyond
-    /// the room.
+    /// Undoes the corrections that earlier runs made because of the lamps: restores the view found from the photo's
+    /// lines, and clears the lamps found beyond the plane, for which the room was enlarged.
     pub(super) fn forget_lamps(&mut self) {
         self.beyond.clear();
         if let Some(view) = self.view_by_lines.take() {

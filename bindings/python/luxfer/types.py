@@ -545,7 +545,7 @@ class TransferImage(IntEnum):
     EMISSION_MASK = 8
     """The mask of the emissive texture: 1 on lamps, else 0; 1 channel."""
     RENDER = 9
-    """The scene in its new light: linear RGB in cd/m²; in its current state while the rendering runs."""
+    """The scene in its new light: linear RGB in cd/m²; while the rendering runs, the picture so far."""
     RENDER_VARIANCE = 10
     """Variance of the rendering, as RenderImage.VARIANCE; 3 channels."""
     RENDER_PREVIEW = 11
@@ -2629,9 +2629,10 @@ class PlanParams(TypedDict, total=False):
     """Goal of a plan, a time or an error: set exactly one of time_budget_ms and target_error."""
 
     time_budget_ms: int
-    """Time for all planned work in milliseconds, in [1, 1e9]; 0, the default: the goal is target_error."""
+    """Time for all planned work in milliseconds, in [1, 1e9]; 0 (the default) if the goal is target_error."""
     target_error: float
-    """Error of the picture, or of the stylisation, in [1e-5, 1]; 0, the default: the goal is time_budget_ms."""
+    """Error of the picture, or of the stylisation, in [1e-5, 1]; 0 (the default) if the goal is
+    time_budget_ms."""
 
 
 @dataclass(frozen=True)

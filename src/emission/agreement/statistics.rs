@@ -48,7 +48,8 @@ impl Statistics {
         let Pattern { width, height, components, whole, periods, colour } = pattern;
         let columns: Vec<f64> = (0..*width).map(|x| weight(x as f64 + 0.5, *width, periods[0])).collect();
 
-        // Sum up light and area over the pixels, weighted by position.
+        // Sum up light and area over the pixels. Weight them by position, so that the sums do not depend on the place
+        // where the border cuts the pattern (see the beginning of this file).
         let (mut all, mut lit, mut light) = (0.0, 0.0, 0.0);
         for y in 0..*height {
             let row = weight(y as f64 + 0.5, *height, periods[1]);
@@ -62,7 +63,7 @@ impl Statistics {
             }
         }
 
-        // Average over the lamps, weighted by position.
+        // Average over the whole lamps. Weight each lamp by the position of its centre, for the same reason.
         let lamps: Vec<(DVec2, f64)> =
             components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
         let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);

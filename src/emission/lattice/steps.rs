@@ -51,8 +51,8 @@ pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     })
 }
 
-/// The steps between lamps of about equal size that are parallel to the x or y axis, each with the number of pairs of
-/// lamps that show it.
+/// The steps parallel to the x or y axis between lamps of about equal size. Each has the number of pairs of lamps that
+/// show it.
 fn steps(lamps: &[MeasuredLamp]) -> Vec<Step> {
     let mut steps: Vec<Step> = Vec::new();
     for (n, from) in lamps.iter().enumerate() {

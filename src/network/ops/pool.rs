@@ -109,7 +109,7 @@ impl Pool {
         let mut out = call.budget.zeros(&shape)?;
         let values = x.as_floats()?;
         let Window { strides, dilations, .. } = &self.window;
-        // Iterates over the pixels along an axis that window `k` covers inside the image.
+        // Iterates, along one axis, over the coordinates of the pixels that window `k` covers inside the image.
         let inside = |axis: usize, k: usize, size: usize| {
             let start = k * strides[axis];
             (0..self.kernel[axis]).filter_map(move |i| {

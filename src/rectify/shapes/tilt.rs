@@ -1,4 +1,4 @@
-//! Searches for the tilt of a plane with which the lamp shapes on the plane have equal size and form.
+//! Searches for the tilt of a plane at which the lamp shapes on the plane, once unwarped, agree best in size and form.
 
 use super::likeness::{self, Shape};
 use crate::error::Result;
@@ -35,8 +35,9 @@ const MAX_LINES_COST: f64 = 9.0;
 /// camera upright. `ROLL_ERROR` is in radians. [bench photos:tune]
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
-/// A tilt is rejected if the cosine of the angle between its normal and the normal from the lines is below this. Both
-/// normals must put the plane on the same side of the camera. [bench photos:tune]
+/// A tilt is rejected if the cosine of the angle between its normal and the normal that the lines imply is below this.
+/// The test is loose: it allows angles up to 78 degrees. It rejects every tilt that puts the plane on the other side of
+/// the camera, such as a floor instead of a ceiling. [bench photos:tune]
 const MIN_COSINE: f64 = 0.2;
 
 /// The normal of a plane, which points away from the camera, and the focal length in pixels.

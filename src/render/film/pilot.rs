@@ -191,9 +191,13 @@ fn render_tiles(
     Ok(chosen.iter().map(|c| tile_sums(context.grid, c)).collect())
 }
 
-/// Returns the time per path of the image in seconds: the time per path of the pilot tiles, times a correction, since
-/// expensive tiles may be selected more often than others. The correction is the mean time per path, with each tile
-/// weighted by the number of tiles that it represents, divided by the unweighted mean.
+/// Returns the time per path of the whole image in seconds, with all threads busy. `seconds` is the elapsed time of the
+/// pilot's three passes. The tiles' own times are times on one thread, so only their ratios are used.
+///
+/// Expensive tiles may be selected more often than others, so the pilot's own time per path, `seconds / paths`, is
+/// biased. It is multiplied by the ratio of two means of the tiles' times per path. In the first mean, a tile counts
+/// with its pixels times the number of tiles that it represents. In the second mean, it counts with the number of paths
+/// that the pilot traced in it.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);

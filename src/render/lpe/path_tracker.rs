@@ -293,7 +293,7 @@ fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome:
     }
 }
 
-/// Returns the layer that scatters, if only one layer has a non-zero value.
+/// Returns the layer that scatters, if at most one layer has a non-zero value; `Diffuse` if both values are zero.
 #[inline]
 fn only_layer(lobes: Lobes) -> Option<Scatter> {
     if lobes.glossy == Vec3::ZERO {

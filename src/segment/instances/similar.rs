@@ -392,7 +392,8 @@ impl Search<'_> {
         }
         let [l, a, b] = regions.colour(node);
         let chroma = model.colours.iter().map(|c| (c[1] - a).hypot(c[2] - b)).fold(f64::INFINITY, f64::min);
-        // Lower the limit for small lamps, because blur darkens them.
+        // Lower the limit for small lamps: blur takes the share 1 - `sharpness` of their contrast. `model.ring / RING`
+        // is the median contrast, in L*, that the lamps under the strokes would have without blur.
         let min_lightness = model.min_lightness - (1.0 - sharpness) * model.ring / RING;
         let lightness = l / min_lightness.max(1.0);
         // A relative shortfall below the minimum L* counts tenfold, because bright colours differ little in L*.
