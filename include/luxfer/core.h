@@ -259,9 +259,9 @@ typedef struct luxfer_context_params {
     uint32_t struct_size;
     /**
      * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
-     * share these threads. Synchronous calls, which do their work before they return, never wait for a job: such a
-     * call runs on the calling thread, or on a separate set of num_threads threads. Calls that run at the same time
-     * use different sets; the context keeps up to four idle sets for later calls.
+     * share these threads. Synchronous calls, which do their work before they return, do not use them, and so never
+     * wait for a job. A synchronous call runs on the calling thread, or on a set of num_threads other threads that it
+     * has to itself. The context keeps up to four idle sets for later calls.
      */
     uint32_t num_threads;
     /**
@@ -656,7 +656,8 @@ luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
  * reference to a running job cancels the job and waits until it has ended.
  *
  * Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
- * waiting job at once. Of all other calls, only luxfer_job_wait and the release of a running job wait for jobs.
+ * waiting job at once. Only two calls wait for a job: luxfer_job_wait, and luxfer_release of the last reference to a
+ * running job.
  * ================================================================================================================== */
 
 /** A job: work in progress. See luxfer_job_wait. */
@@ -723,9 +724,11 @@ typedef int32_t (*luxfer_work_fn)(void *user);
  * releases *job. Any thread.
  *
  * A cancel request to this job also cancels the jobs that the function waits for, and makes the function's calls in
- * this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture. If the
- * function returns an error, the message of the job is that of the last call that failed on its thread. If it returns
- * LUXFER_NOT_READY, the job ends with LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY says that a job runs.
+ * this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture.
+ *
+ * If the function returns an error, the job ends with this error. The message of the job is that of the last call that
+ * failed on the job's thread. The error LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because
+ * luxfer_job_wait returns LUXFER_NOT_READY for a job that still runs.
  * LUXFER_INVALID_ARGUMENT if work is NULL.
  */
 luxfer_status luxfer_job_start(luxfer_context *context,

@@ -121,7 +121,7 @@ luxfer_status luxfer_demo_photo_start(luxfer_demo_photo *demo,
 /**
  * Gets the image that a LUXFER_DEMO_PHOTO_ value selects: the photo or its strokes. The caller releases *image. Any
  * thread.
- * LUXFER_NOT_READY before a job has succeeded.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_INVALID_ARGUMENT if kind is another value.
  */
 luxfer_status luxfer_demo_photo_get_image(luxfer_demo_photo *demo,
                                           luxfer_demo_photo_image kind,

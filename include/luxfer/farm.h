@@ -19,7 +19,8 @@ extern "C" {
  * Renders an image on several machines. A part is a rectangle of the image and a range of its paths. Each machine
  * renders parts into files, and one machine merges the files. The result equals the image that one machine renders as
  * a single part, for any division into parts and any order, except for the rounding of sums in double precision. A
- * lost part can be rendered again and is then equal to the bit.
+ * lost part can be rendered again and is then equal to the bit. An image of luxfer_render_start has the same expected
+ * values, but other noise.
  *
  * A part has a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. All
  * parts and the merge must use the same scene, camera, layers and luxfer_render_params; the merge checks this.
@@ -100,8 +101,9 @@ luxfer_status luxfer_render_add_part(luxfer_render *render,
 luxfer_status luxfer_render_clear_parts(luxfer_render *render);
 
 /**
- * Starts a job that merges the files of luxfer_render_add_part. Afterwards the rendering has the same images and
- * layers as after luxfer_render_start. params may be NULL for the defaults. The caller releases *job. Any thread.
+ * Starts a job that merges the files of luxfer_render_add_part. Afterwards the merged images and layers can be read by
+ * the same functions as those of luxfer_render_start. params may be NULL for the defaults. The caller releases *job.
+ * Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
  * and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or
  * another scene, if parts overlap, or if paths are missing: the message names the first gap; LUXFER_IO or

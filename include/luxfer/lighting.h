@@ -541,9 +541,9 @@ luxfer_status luxfer_importance_set_scene(luxfer_importance *importance,
 /**
  * Starts a job that traces the map. The new map replaces the earlier map and the placement that was found with it.
  * params may be NULL for the defaults. The caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running. The job may end with
- * LUXFER_INVALID_ARGUMENT if the scene is not valid, the surfaces have no texture coordinates, or a setting is out of
- * range; LUXFER_DEGENERATE if the target has no area.
+ * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_INVALID_ARGUMENT if a setting
+ * is out of range. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or the surfaces have no
+ * texture coordinates; LUXFER_DEGENERATE if the target has no area.
  */
 luxfer_status luxfer_importance_start(luxfer_importance *importance,
                                       const luxfer_importance_params *params,
@@ -559,9 +559,9 @@ luxfer_status luxfer_importance_get_image(luxfer_importance *importance,
 
 /**
  * Computes the light that the target receives from a texture. The texture is linear, in cd/m², and repeats. placement
- * is a 3 x 3 matrix M, row by row, with the last row 0 0 1: M (u, v, 1) is the point of the texture that lies at the
- * texture coordinates (u, v) of the surface. NULL is the identity. The call takes a few milliseconds. size is sizeof
- * *report. Any thread.
+ * is a 3 x 3 matrix M, row by row, with the last row 0 0 1. The surface shows at its texture coordinates (u, v) the
+ * point (s, t) of the texture, where (s, t, 1) = M (u, v, 1); s and t are in widths and heights of the texture. NULL
+ * is the identity. The call takes a few milliseconds. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_INVALID_ARGUMENT if placement is not finite.
  */
 luxfer_status luxfer_importance_respond(luxfer_importance *importance,
@@ -729,7 +729,7 @@ typedef struct luxfer_glare_report {
     double solid_angle;
     /**
      * Number of lights of the rendered scene that shine from points: point lights, spot lights, and luminaires without
-     * faces. They are invisible in the image, and ugr leaves them out. Known only for images of
+     * luminous opening. They are invisible in the image, and ugr leaves them out. Known only for images of
      * luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires, the
      * scene has LUXFER_WARNING_NOT_IN_PICTURE.
      */
@@ -1053,8 +1053,8 @@ luxfer_status luxfer_preset_get_name(luxfer_context *context,
  * ================================================================================================================== */
 
 /**
- * No length determines the size, or only with a standard deviation above half of the size. The fields drop, diameter
- * and height then hold only bounds.
+ * The size is unknown: no length determines it, or its standard deviation exceeds half of it. The fields drop,
+ * diameter and height then hold only bounds.
  */
 #define LUXFER_DOUBT_SIZE 1
 
@@ -1119,8 +1119,8 @@ typedef struct luxfer_pendants_params {
     double focal;
     /**
      * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
-     * for the standard deviation that the rectification has; it has one only for a focal length that was assumed or
-     * read from metadata.
+     * for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It is 0 only
+     * if the rectification was given the focal length.
      */
     double focal_error;
     /**

@@ -66,8 +66,8 @@ typedef struct luxfer_plan_report {
     /** Predicted value of luxfer_relight_report.error; 0 unless the plan is of a transfer. */
     double relight_error;
     /**
-     * Predicted seconds for rendering, including the preparation of the scene in a plan of a transfer; 0 in a plan of
-     * a stylisation.
+     * Predicted seconds for rendering. In a plan of a transfer, they include the preparation of the scene; in a plan
+     * of a rendering they do not, because the plan has already prepared it. 0 in a plan of a stylisation.
      */
     double render_seconds;
     /** Predicted value of luxfer_render_report.error; 0 in a plan of a stylisation. */
@@ -151,8 +151,8 @@ luxfer_status luxfer_plan_get_relight_params(luxfer_plan *plan,
  * Starts a job that plans a stylisation of the whole target with the current artwork, guides and masks of stylize.
  * The plan chooses only the numbers of rounds and search iterations (the fields iterations, coarse_iterations,
  * finest_iterations, polish and search_iterations). The resolution and all other values come from settings, where NULL
- * stands for the defaults. params gives the goal, a time or an error. If no settings reach the goal, the plan gives the
- * settings that come nearest to it. The caller releases *job. Any thread.
+ * stands for the defaults. params gives the goal, a time or an error. If no settings reach the goal, the plan gives
+ * the settings that come nearest to it. The caller releases *job. Any thread.
  *
  * The error is the square root of luxfer_stylize_report.energy: the root mean square difference of matched patches in
  * colours and guides, whose values are in [0, 1].
@@ -171,9 +171,7 @@ luxfer_status luxfer_plan_start_stylize(luxfer_plan *plan,
  * iterations, which the plan has chosen. size is sizeof *params. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a stylisation.
  */
-luxfer_status luxfer_plan_get_stylize_params(luxfer_plan *plan,
-                                             luxfer_stylize_params *params,
-                                             size_t size);
+luxfer_status luxfer_plan_get_stylize_params(luxfer_plan *plan, luxfer_stylize_params *params, size_t size);
 
 #ifdef __cplusplus
 }

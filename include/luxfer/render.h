@@ -47,8 +47,8 @@ typedef struct luxfer_render_params {
     uint64_t seed;
     /**
      * Stop when the relative error of every block of 8 x 8 pixels is at most this value, >= 0; 0.1 means within 10 %
-     * of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths per
-     * pixel, even if it then misses the target.
+     * of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 * samples paths per pixel
+     * (the field samples), even if it then misses the target.
      *
      * The relative error of a pixel is e / max(Y, m / 10). Here e is half the width of the 95 % confidence interval of
      * the pixel's luminance Y, and m is the mean of the image. The relative error of a block is the root mean square
@@ -131,9 +131,9 @@ typedef struct luxfer_render_report {
 #define LUXFER_RENDER_INTERVAL 3
 
 /**
- * The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is averaged with those
- * neighbours whose difference from it the noise can explain. A pixel keeps its unfiltered value where this value is
- * estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
+ * The beauty image after a noise filter that follows the edges of the visible surfaces. The filter averages a pixel
+ * with neighbours that differ from it by no more than the noise. A pixel keeps its unfiltered value where this value
+ * is estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
  * luxfer_render_report.preview_error estimates the remaining error. The image exists only if
  * luxfer_render_params.preview is not 0.
  */
@@ -268,15 +268,15 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
 
 /**
  * 1 + index of the mesh on which more than half of the pixel's hits lie. Without such a majority: 1 + index of any
- * mesh that was hit. 0 where there is no surface. The faces of the luminaire with index i among the punctual lights
- * have the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel X.
+ * mesh that was hit. 0 where there is no surface. The luminous opening of the luminaire with index i among the
+ * punctual lights has the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel X.
  */
 #define LUXFER_AOV_OBJECT 64
 
 /**
  * 1 + index of the material on which more than half of the pixel's hits lie. Without such a majority: 1 + index of any
- * material that was hit. 0 where there is no surface. The faces of luminaires have the value n + 1, where n is the
- * number of materials. Layer IndexMA, channel X.
+ * material that was hit. 0 where there is no surface. The luminous openings of luminaires have the value n + 1, where
+ * n is the number of materials. Layer IndexMA, channel X.
  */
 #define LUXFER_AOV_MATERIAL 128
 

@@ -134,11 +134,11 @@ luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
 
 /**
  * Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
- * plane from which most of the room is visible. name is the name of the object or material, in UTF-8. If no name is
- * equal to it, a name that differs only in upper and lower case is taken; if there is none either, the only name that
- * contains it. size is sizeof *found. Any thread.
- * LUXFER_NOT_FOUND if no object or material has that name: the message lists names that exist; LUXFER_DEGENERATE if
- * there is no planar surface.
+ * plane from which most of the room is visible. name is the name of the object or material, in UTF-8. An equal name is
+ * sought first, then a name that differs only in upper and lower case, then the only name that contains name in any
+ * case. Each step looks at the objects first, then at the materials. size is sizeof *found. Any thread.
+ * LUXFER_NOT_FOUND if no name fits, or if name is only a part of several names: the message lists names that exist;
+ * LUXFER_DEGENERATE if there is no planar surface.
  */
 luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
                                         const char *name,
@@ -210,7 +210,7 @@ static inline luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_para
  * A luminaire shines from the faces of its luminous opening, with the size that its file states: a rectangle, a disc,
  * a box, a cylinder or an ellipsoid. In each direction, all points of the faces have the same luminance: the intensity
  * divided by the projected area of the faces. The light is therefore right at any distance, and renderings show the
- * faces. A luminaire whose file states no size, or one below 1 mm², shines from a point.
+ * faces. A luminaire whose file states no size, or a size below 1 mm², shines from a point.
  */
 #define LUXFER_LUMINAIRE_FACES 0
 
@@ -765,7 +765,7 @@ luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
 /** No index: stands for no mesh, no triangle, no texture or no material. */
 #define LUXFER_NONE 4294967295
 
-/** A ray. An element of arrays, so this struct never changes. */
+/** A ray. Callers pass arrays of this struct, so its size and fields never change in later versions. */
 typedef struct luxfer_ray {
     /** Start of the ray, in metres. */
     float origin[3];
@@ -778,7 +778,9 @@ typedef struct luxfer_ray {
     float t_max;
 } luxfer_ray;
 
-/** The nearest hit of a ray. An element of arrays, so this struct never changes. */
+/**
+ * The nearest hit of a ray. Callers pass arrays of this struct, so its size and fields never change in later versions.
+ */
 typedef struct luxfer_hit {
     /** Distance of the hit in units of the length of the ray's direction; infinite for a miss. */
     float t;
@@ -831,7 +833,7 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
 /** At least one surface is partly transparent because of its alpha. */
 #define LUXFER_SCATTERING_ALPHA 16
 
-/** At least one surface emits; the faces of luminaires count. */
+/** At least one surface emits; the luminous openings of luminaires count. */
 #define LUXFER_LIGHTS_SURFACE 1
 
 /** At least one emitting surface has an emission texture. */
@@ -861,9 +863,9 @@ typedef struct luxfer_requirements {
     uint32_t textures;
     /**
      * Number n of bounces that matter: the smallest positive integer with a^n <= error. Here a is the largest channel
-     * of the field albedo, and error is the argument of luxfer_scene_get_requirements. Light with more than n bounces
-     * is then at most the share error of all scattered light. 0 if there is no such n. For information only: no
-     * rendering ends paths at this number.
+     * of the field albedo, and error is the argument of luxfer_scene_get_requirements. With error = 0.01, for example,
+     * light with more than n bounces is at most 1 % of all scattered light. 0 if there is no such n. For information
+     * only: no rendering ends paths at this number.
      */
     uint32_t bounces;
     /** Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces. */
@@ -1043,8 +1045,8 @@ typedef struct luxfer_candidate {
     /** Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates. */
     const char *name;
     /**
-     * The reason for the score: an English sentence with the figures, in zero-terminated UTF-8. The string lives as
-     * long as the luxfer_candidates.
+     * The reason for the score: an English sentence that states area, level_area, height and the shares of the formula
+     * in percent, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
      */
     const char *reason;
 } luxfer_candidate;
@@ -1057,7 +1059,8 @@ typedef struct luxfer_candidate {
 
 /**
  * Creates a list of the candidates for the ceiling: all objects of a scene and all materials that its triangles use,
- * the likeliest ceiling first. The call reads each triangle once. The caller releases *candidates. Any thread.
+ * the likeliest ceiling first. The time of the call is proportional to the number of triangles. The caller releases
+ * *candidates. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid.
  */
 luxfer_status luxfer_scene_get_candidates(luxfer_scene *scene,

@@ -103,9 +103,9 @@ typedef struct luxfer_rectify_params {
     /** Must be 0. */
     uint32_t reserved;
     /**
-     * Limit of the magnification by unwarping, in (0, 1e6]; default 16. The farther a part of the plane is from the
-     * camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the nearest part by
-     * more than this factor are cut off.
+     * Limit of the magnification by unwarping, a ratio of lengths in (0, 1e6]; default 16. The farther a part of the
+     * plane is from the camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the
+     * nearest part by more than this factor are cut off.
      */
     double max_magnification;
     /** Seed of the search; default 1. */
@@ -439,9 +439,11 @@ luxfer_status luxfer_features_set_depth(luxfer_features *features,
 /**
  * Sets a network in an ONNX file, which estimates the depth if there is no depth map; path is UTF-8. The network has
  * one input: the photo as a float tensor [1, 3, rows, columns], with up to 4096 rows and columns. Its first output is
- * a map of relative inverse depth, as MiDaS and DPT compute it. The map is scaled so that its nearest pixel lies on
- * near_plane and its farthest pixel on far_plane. normalisation is a LUXFER_NORMALISATION_ value. path may be NULL: no
- * network. The call reads the file, which is not needed afterwards. Any thread.
+ * a map of relative inverse depth, as MiDaS and DPT compute it. The library converts the map to depths in
+ * [near_plane, far_plane]: the nearest pixel gets near_plane, the farthest far_plane (LUXFER_FEATURES_NETWORK_DEPTH).
+ * These depths then serve as a depth map, which the setting near_plane scales once more. normalisation is a
+ * LUXFER_NORMALISATION_ value. path may be NULL: no network. The call reads the file, which is not needed afterwards.
+ * Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is damaged; LUXFER_UNSUPPORTED if it needs an operator
  * that the library does not support, or if the library was built without the Cargo feature onnx.
  */
@@ -568,7 +570,10 @@ typedef struct luxfer_segment_report {
     uint32_t struct_size;
     /** Channels of the features that the segmentation has used, bit i for channel i. */
     uint32_t channels;
-    /** Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training. */
+    /**
+     * Expected share of wrong pixels, in [0, 1]. For a surface, it is estimated on strokes held out of the training.
+     * For lamps, it is the area of the lamps, times the share of wrong pixels that is usual in such lamps.
+     */
     double error;
     /** Number of samples of the negative class. */
     uint64_t negative_samples;
@@ -581,7 +586,10 @@ typedef struct luxfer_segment_report {
 /** The mask: 1 where the confidence is above one half, else 0; 1 channel. */
 #define LUXFER_SEGMENT_MASK 0
 
-/** The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel. */
+/**
+ * The confidence that a pixel is of the positive class, in [0, 1]; 1 channel. For a surface: the probability. For
+ * lamps: 1 inside a lamp, 0 outside, 0.5 on its contour; it changes from 1 to 0 within about two pixels.
+ */
 #define LUXFER_SEGMENT_CONFIDENCE 1
 
 /**
@@ -599,8 +607,8 @@ typedef struct luxfer_segment_report {
 /**
  * A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the ten channels
  * of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the wall, the floor or the
- * ceiling that the positive strokes lie on. If they lie on more than one of these, it is restricted to the connected
- * parts of the mask that positive strokes touch.
+ * ceiling that the positive strokes lie on. If the strokes lie on more than one of these, the mask is restricted to
+ * those of its connected parts that positive strokes touch.
  */
 #define LUXFER_SUBJECT_SURFACE 1
 
@@ -724,8 +732,9 @@ typedef struct luxfer_emission_params {
     /** Height of the texture in texels, in [1, 65536]; default 1024. */
     uint32_t height;
     /**
-     * Side of the square patches that are copied from the exemplar, in [0, 65536]; 0, the default: chosen from the
-     * spacing of the lights. It is in pixels of the exemplar after its reduction to working_side.
+     * Side of the square patches that are copied from the exemplar, in [0, 65536], in pixels of the exemplar after its
+     * reduction to working_side. 0, the default: with LUXFER_LAW_LATTICE, 1.5 times the longer period, but at most
+     * half of the exemplar's shorter side; with other laws, a quarter of the shorter side.
      */
     uint32_t block;
     /** Number of unwarped pixels per texel, along one side, in [1e-3, 1e3]; default 1. */
@@ -743,17 +752,17 @@ typedef struct luxfer_emission_params {
     /** Seed of the synthesis; default 1. */
     uint64_t seed;
     /**
-     * The lights count as regular if their autocorrelation after a shift by a period is at least this value, in [0,
-     * 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues no repetition, and patches
-     * may lie anywhere.
+     * Threshold of LUXFER_LAW_CORRELATION, in [0, 1]; default 0.6. A shift counts as a period of the lights if their
+     * autocorrelation after this shift is at least this value. At 0, even a poor repetition counts. LUXFER_LAW_BEST
+     * also tries periods with a lower autocorrelation. At 1, both choose LUXFER_LAW_FREE.
      */
     float min_regularity;
     /** 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps. */
     uint32_t whole_lamps;
     /**
      * Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-     * default 0. If the lights form no lattice, the offset shifts the lamps of a tileable texture, and must be 0 for
-     * other textures.
+     * default 0. With LUXFER_LAW_FREE, the pattern has no fixed place: the offset must be 0, unless the texture is
+     * tileable and no light is copied patch by patch. It then shifts all lamps.
      */
     double offset[2];
     /**
@@ -766,19 +775,20 @@ typedef struct luxfer_emission_params {
     uint32_t even_lamps;
     /**
      * 1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the opposite
-     * edge. A lattice is stretched so that a whole number of periods fits; the width and the height of the pattern
-     * change by less than half a period. Needs whole_lamps. Default 0.
+     * edge. Lights with periods are stretched so that a whole number of periods fits; the width and the height of the
+     * pattern change by less than half a period. Needs whole_lamps. Default 0.
      */
     uint32_t tileable;
     /**
-     * 1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's centre,
-     * so that the border cuts as few lamps as possible. The field offset shifts the lattice from there. Default 0.
+     * 1: the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps, lies at
+     * the texture's centre, whichever lets the border cut the fewest lamps. The field offset shifts the pattern from
+     * there. Default 0. No effect with LUXFER_LAW_FREE.
      */
     uint32_t centred;
     /**
-     * Number of patches, drawn at random from the exemplar, that are compared for each patch of the texture if the
-     * lights form no lattice; in [1, 65536]; default 192. The patches that continue neighbouring patches are compared
-     * in addition.
+     * For LUXFER_LAW_FREE: number of patches, drawn at random from the exemplar, that are compared for each patch of
+     * the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the patches already placed beside
+     * it are compared in addition.
      */
     uint32_t candidates;
     /** Must be 0. */
@@ -822,14 +832,15 @@ typedef struct luxfer_emission_report {
     /** Number of luminaires in the texture; see luxfer_emission_get_luminaire. */
     uint32_t luminaires;
     /**
-     * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the area of
-     * whole lamps, and the distance from a lamp to its nearest neighbour. The value 0.1 stands for 10 %. It means
-     * little if exemplar_lamps is small. NaN for a composition.
+     * Largest relative difference between texture and exemplar in three statistics: the share of lit area, the mean
+     * area of a whole lamp, and the mean distance from a whole lamp to its nearest neighbour. The value 0.1 stands for
+     * 10 %. It means little if exemplar_lamps is small. NaN for a composition.
      */
     double error;
     /**
-     * Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period, and of two periods the
-     * lower value. 0 if the lights have no period, or if the period was found from the distances between lamps.
+     * Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period. If there are two
+     * periods, it is the lower of their two autocorrelations. 0 if the lights have no period, or if the period was
+     * found from the distances between lamps.
      */
     double regularity;
     /**
@@ -843,8 +854,8 @@ typedef struct luxfer_emission_report {
      * Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
      * ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
      * of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
-     * indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a composition, and
-     * if the texture is hardly larger than the exemplar.
+     * indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a composition,
+     * and if the texture is too small to hold parts as large as the exemplar at clearly different places.
      */
     float sampling_error;
     /** The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value. */
@@ -862,9 +873,9 @@ typedef struct luxfer_emission_report {
      */
     double law_score;
     /**
-     * law_score minus the score of runner_up; NaN if law_score is NaN. It is negative if the law was chosen although
-     * runner_up scores slightly better: LUXFER_LAW_BEST prefers the law of LUXFER_LAW_CORRELATION, and lattices along
-     * the axes of the room.
+     * law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is NaN.
+     * It is negative if the law was chosen although runner_up scores slightly better: LUXFER_LAW_BEST prefers the law
+     * of LUXFER_LAW_CORRELATION, and lattices along the axes of the room.
      */
     double margin;
 } luxfer_emission_report;
@@ -904,8 +915,7 @@ typedef struct luxfer_luminaire {
  * The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at the reduced
  * resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light. Channels 1 and 2 are
  * the x and y distances from the pixel to the nearest lit pixel, positive to the right and down, divided by a length L
- * and clamped to [-1, 1]. L is the side of a patch or, if the lights have periods, half the longer period if that is
- * shorter.
+ * and clamped to [-1, 1]. L is the side of a patch, but at most half the longer period if the lights repeat.
  */
 #define LUXFER_EMISSION_EXEMPLAR_GUIDES 2
 
@@ -942,8 +952,8 @@ luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
  * Starts a job that makes the whole texture in memory. For textures that are too large for that, use
  * luxfer_emission_start_composition. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
- * LUXFER_DEGENERATE if the exemplar has no lights, or not the lattice or row that the setting law asks for;
- * LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
+ * LUXFER_DEGENERATE if the exemplar has no lights, or if the setting law asks for a lattice or a row that the lights
+ * do not form; LUXFER_INVALID_ARGUMENT if sizes differ or a setting is out of range.
  */
 luxfer_status luxfer_emission_start(luxfer_emission *emission,
                                     const luxfer_emission_params *params,
@@ -970,9 +980,10 @@ luxfer_status luxfer_emission_get_report(luxfer_emission *emission,
 /**
  * Describes a luminaire of the texture; index starts at 0. size is sizeof *luminaire. Any thread.
  *
- * A composition (luxfer_emission_start_composition) has no texels yet. Its luminaires are measured in the exemplar, and
- * cut at the edges of the texture. Only lights that are copied patch by patch are measured as the texture will show
- * them: lights that run through the whole exemplar, such as light bands, and all lights if whole_lamps is 0.
+ * A composition (luxfer_emission_start_composition) has no texels yet. Its luminaires are measured in the exemplar,
+ * and cut at the edges of the texture. Lights that are copied patch by patch are the exception: they are measured as
+ * the texture will show them. These are lights that run through the whole exemplar, such as light bands, and all
+ * lights if whole_lamps is 0.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND if there is no such luminaire.
  */
 luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
@@ -1040,8 +1051,8 @@ luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
  * releases *job. Any thread.
  */
 luxfer_status luxfer_emission_start_composition(luxfer_emission *emission,
-                                         const luxfer_emission_params *params,
-                                         luxfer_job **job);
+                                                const luxfer_emission_params *params,
+                                                luxfer_job **job);
 
 /**
  * Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
@@ -1228,10 +1239,10 @@ luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
 /**
  * Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The
  * caller releases *job. Any thread.
- * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running. The job may end with
- * LUXFER_UNREACHABLE if in each channel no emitted light reaches the target or the other lights alone exceed it,
- * LUXFER_DEGENERATE if the target has no area, LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out
- * of range.
+ * LUXFER_INVALID_OPERATION if the scene or the target is missing or a job is already running; LUXFER_INVALID_ARGUMENT
+ * if a setting is out of range. The job may end with LUXFER_UNREACHABLE if no channel has a solution: no emitted light
+ * of the channel reaches the target, or the other lights alone exceed it; LUXFER_DEGENERATE if the target has no area;
+ * LUXFER_INVALID_ARGUMENT if the scene is not valid.
  */
 luxfer_status luxfer_relight_start(luxfer_relight *relight,
                                    const luxfer_relight_params *params,

@@ -75,7 +75,10 @@ typedef int32_t luxfer_guides_image;
 /** Unit normals in camera space: x right, y up, z towards the camera; 0 where there is no surface; 3 channels. */
 #define LUXFER_GUIDES_NORMALS 5
 
-/** Edges of shapes: 1 on an edge, 0 away from edges; 1 channel. */
+/**
+ * Strength of the edges of shapes, in [0, 1]: changes of material, creases and jumps in depth; 1 on a clear edge, 0
+ * away from edges; 1 channel.
+ */
 #define LUXFER_GUIDES_EDGES 6
 
 /**
@@ -85,8 +88,8 @@ typedef int32_t luxfer_guides_image;
 #define LUXFER_GUIDES_MATERIALS 7
 
 /**
- * Caustics: light that reaches the camera from a diffuse surface, after one or more glossy surfaces, mirrors or clear
- * panes (LS+DE).
+ * Caustics: light that glossy surfaces, mirrors or clear panes (one or more of them) cast onto a diffuse surface,
+ * which reflects it to the camera (LS+DE).
  */
 #define LUXFER_GUIDES_CAUSTICS 8
 
@@ -158,7 +161,9 @@ typedef struct luxfer_stylize_params {
     luxfer_stylize_mode mode;
     /** Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH. */
     luxfer_stylize_search search;
-    /** Width of a patch in pixels, odd, in [1, 33]; default 5. */
+    /**
+     * Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if the images are smaller than that.
+     */
     uint32_t patch;
     /**
      * Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
@@ -192,8 +197,8 @@ typedef struct luxfer_stylize_params {
      */
     uint32_t passes;
     /**
-     * Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration, a target
-     * patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
+     * Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration, a
+     * target patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
      */
     uint32_t settle;
     /**
@@ -203,13 +208,13 @@ typedef struct luxfer_stylize_params {
      */
     float seam;
     /**
-     * How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
-     * LUXFER_STYLIZE_VOTE_WEIGHTED.
+     * How a pixel is computed from overlapping patches in all rounds but the last: a LUXFER_STYLIZE_VOTE_ value;
+     * default LUXFER_STYLIZE_VOTE_WEIGHTED.
      */
     luxfer_stylize_vote vote;
     /**
-     * How a pixel of the final picture is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value; default
-     * LUXFER_STYLIZE_VOTE_ADAPTIVE.
+     * How a pixel of the final picture, after the last round, is computed from overlapping patches: a
+     * LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_ADAPTIVE.
      */
     luxfer_stylize_vote final_vote;
     /**
@@ -245,10 +250,10 @@ typedef struct luxfer_stylize_params {
     uint32_t coarse_iterations;
     /**
      * Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
-     * with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Kaspar et al. 2015 use (Fig. 10n). The
-     * penalty is added to the distance of a match (their Eq. 1), which is the weighted sum of squared differences over
-     * the pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
-     * lambda.
+     * with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. 2016 chose for their
+     * picture of this method (their Fig. 10n). The penalty is added to the distance of a match (their Eq. 1), which is
+     * the weighted sum of squared differences over the pixels of a patch, with channels in [0, 1]. A patch that is
+     * used as often as the average has the penalty lambda.
      */
     float occurrence;
     /** Must be 0. */
@@ -321,8 +326,8 @@ typedef int32_t luxfer_stylize_preset;
 #define LUXFER_STYLIZE_VOTE_NEAREST 2
 
 /**
- * The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork meet,
- * each stays whole up to the seam.
+ * The artwork pixel that the largest number of overlapping patches put at this pixel. Where two pieces of the artwork
+ * meet, each stays whole up to the seam.
  */
 #define LUXFER_STYLIZE_VOTE_MAJORITY 3
 
@@ -487,7 +492,9 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
  * Starts a job that updates the picture after the artist has changed the artwork. artwork is the new artwork, with
  * the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
  * from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
- * the time of luxfer_stylize_start. The caller releases *job. Any thread.
+ * the time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if
+ * the artwork changes there; as there, a step at their border fades out into the new paint. Strokes that cross the
+ * border are not continued anew. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
  * with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
  * too.
@@ -504,9 +511,9 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
  *
  * The call is a shorthand for luxfer_stylize_set_source_mask with this mask, and luxfer_stylize_set_target_mask with
  * the inverse mask and the artwork. The painted pixels stay as they are. The new paint continues strokes across the
- * border of the painted part, and this border is hardly visible. Hardly any patch of the artwork is used more than 100
- * times as often as the average patch. If the painted part lacks light that the rest shows, the result has the warning
- * LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
+ * border of the painted part, and this border is hardly visible. To avoid visible copies, the library hardly ever uses
+ * a patch of the artwork more than 100 times as often as the average patch. If the painted part lacks light that the
+ * rest shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place where the artist should paint.
  * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
  * size or has more than 1 channel.
  */

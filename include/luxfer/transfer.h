@@ -47,8 +47,8 @@ typedef struct luxfer_pattern_params {
     /** Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0. */
     double rotation;
     /**
-     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a lattice have
-     * no fixed places: for them, a shift other than 0 is an error unless the texture is tileable.
+     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With LUXFER_LAW_FREE, lamps
+     * have no fixed places: a shift other than 0 is then an error unless the texture is tileable.
      */
     double offset[2];
     /**
@@ -434,7 +434,7 @@ typedef struct luxfer_fixture {
 /** The mask of the lights in the photo: 1 on lights, else 0; 1 channel. */
 #define LUXFER_TRANSFER_LIGHTS_MASK 3
 
-/** Probability that a pixel of the photo is a light, in [0, 1]; 1 channel. */
+/** Confidence that a pixel of the photo is a light, in [0, 1], as LUXFER_SEGMENT_CONFIDENCE; 1 channel. */
 #define LUXFER_TRANSFER_LIGHTS_CONFIDENCE 4
 
 /** The unwarped image: the plane in frontal view, linear RGB. */
@@ -619,20 +619,20 @@ typedef struct luxfer_warning {
 
 /**
  * Much of the mask of a surface is unlike every stroke, or the mask of lamps leaves out regions that partly resemble
- * the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the mask and the
- * doubtful pixels together. The warning points to the pixel where one more stroke helps most.
+ * the painted or proposed lamps. The severity is the area of these doubtful pixels, divided by the area of the mask
+ * and the doubtful pixels together. The warning points to the pixel where one more stroke helps most.
  */
 #define LUXFER_WARNING_UNSEEN 6
 
 /**
- * Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the number of
- * samples drawn from the strokes.
+ * Positive and negative strokes cover the same pixels, where the later strokes count. The severity is the number of
+ * these pixels, divided by the number of painted pixels that the segmentation learns from.
  */
 #define LUXFER_WARNING_CONTRADICTORY_STROKES 7
 
 /**
- * Pixels of strokes lie outside the photo; the severity is the number of these pixels, divided by the number of
- * samples drawn from the strokes.
+ * Pixels of strokes lie outside the photo and are ignored. The severity is the number of these pixels, divided by the
+ * number of painted pixels that the segmentation learns from.
  */
 #define LUXFER_WARNING_OFF_IMAGE_STROKES 8
 
@@ -715,8 +715,8 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_NO_PATTERN 23
 
 /**
- * A mask is a proposal, because strokes are missing: strokes of one class for the plane, or positive strokes for the
- * lights. The severity is the expected share of wrong pixels.
+ * A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or both; for
+ * the lights, positive strokes. The severity is the expected share of wrong pixels.
  */
 #define LUXFER_WARNING_PROPOSED 24
 
@@ -766,8 +766,8 @@ typedef struct luxfer_warning {
 
 /**
  * A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is
- * the difference, in units of the difference that places with equal guides typically have. The warning points to the
- * place in the artwork.
+ * the difference in paint between this place and those places, divided by the difference in paint that places with
+ * equal guides typically have. The warning points to the place in the artwork.
  */
 #define LUXFER_WARNING_BLEMISH 31
 

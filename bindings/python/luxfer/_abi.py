@@ -641,7 +641,7 @@ class luxfer_luminaire_params(Structure):
 
 
 class luxfer_ray(Structure):
-    """A ray. An element of arrays, so this struct never changes."""
+    """A ray. Callers pass arrays of this struct, so its size and fields never change in later versions."""
 
     _fields_ = [
         ("origin", c_float * 3),
@@ -652,7 +652,8 @@ class luxfer_ray(Structure):
 
 
 class luxfer_hit(Structure):
-    """The nearest hit of a ray. An element of arrays, so this struct never changes."""
+    """The nearest hit of a ray. Callers pass arrays of this struct, so its size and fields never change in
+    later versions."""
 
     _fields_ = [
         ("t", c_float),
@@ -891,9 +892,9 @@ class luxfer_emission_params(Structure):
 
 class luxfer_emission_report(Structure):
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
-    quality. A plan (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error
-    is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe
-    the first one."""
+    quality. A composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its
+    sampling_error is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and
+    margin describe the first one."""
 
     _fields_ = [
         ("struct_size", c_uint32),

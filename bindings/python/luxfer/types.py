@@ -106,7 +106,7 @@ class LuminaireShape(IntEnum):
     """A luminaire shines from the faces of its luminous opening, with the size that its file states: a
     rectangle, a disc, a box, a cylinder or an ellipsoid. In each direction, all points of the faces have the
     same luminance: the intensity divided by the projected area of the faces. The light is therefore right at
-    any distance, and renderings show the faces. A luminaire whose file states no size, or one below 1 mm²,
+    any distance, and renderings show the faces. A luminaire whose file states no size, or a size below 1 mm²,
     shines from a point."""
     POINT = 1
     """A luminaire shines from its position as from a point, and is invisible in renderings. The light is right
@@ -210,8 +210,8 @@ class RenderImage(IntEnum):
     """Half the width of the 95 % confidence interval of each pixel's radiance, in cd/m²; 3 channels; infinite
     where a pixel has fewer than two paths."""
     PREVIEW = 4
-    """The beauty image after a noise filter that follows the edges of the visible surfaces. A pixel is averaged
-    with those neighbours whose difference from it the noise can explain. A pixel keeps its unfiltered value
+    """The beauty image after a noise filter that follows the edges of the visible surfaces. The filter averages
+    a pixel with neighbours that differ from it by no more than the noise. A pixel keeps its unfiltered value
     where this value is estimated to be more accurate. Details that come from the light alone, such as soft
     shadows, can be blurred; RenderReport.preview_error estimates the remaining error. The image exists only if
     RenderParams.preview is not 0."""
@@ -356,8 +356,8 @@ class Subject(IntEnum):
     SURFACE = 1
     """A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the
     ten channels of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the
-    wall, the floor or the ceiling that the positive strokes lie on. If they lie on more than one of these, it
-    is restricted to the connected parts of the mask that positive strokes touch."""
+    wall, the floor or the ceiling that the positive strokes lie on. If the strokes lie on more than one of
+    these, the mask is restricted to those of its connected parts that positive strokes touch."""
     LAMPS = 2
     """Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks
     one lamp or more. Regions without a stroke that resemble the marked lamps and lie in the mask of
@@ -371,7 +371,9 @@ class SegmentImage(IntEnum):
     MASK = 0
     """The mask: 1 where the confidence is above one half, else 0; 1 channel."""
     CONFIDENCE = 1
-    """The confidence: probability that a pixel is of the positive class, in [0, 1]; 1 channel."""
+    """The confidence that a pixel is of the positive class, in [0, 1]; 1 channel. For a surface: the
+    probability. For lamps: 1 inside a lamp, 0 outside, 0.5 on its contour; it changes from 1 to 0 within about
+    two pixels."""
     UNSEEN = 2
     """How much a pixel differs from all pixels under strokes, in [0, 1]; 1 channel. For lamps: 1 in regions
     that resemble the painted lamps but not closely enough for the mask, else 0. Another stroke helps where the
@@ -411,8 +413,8 @@ class EmissionImage(IntEnum):
     """The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at
     the reduced resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light.
     Channels 1 and 2 are the x and y distances from the pixel to the nearest lit pixel, positive to the right
-    and down, divided by a length L and clamped to [-1, 1]. L is the side of a patch or, if the lights have
-    periods, half the longer period if that is shorter."""
+    and down, divided by a length L and clamped to [-1, 1]. L is the side of a patch, but at most half the
+    longer period if the lights repeat."""
     GUIDES = 3
     """The guide channels of the texture, at the same reduced resolution: pixels of
     EmissionImage.EXEMPLAR_GUIDES, copied with the patches that give the texture its colours."""
@@ -534,7 +536,7 @@ class TransferImage(IntEnum):
     LIGHTS_MASK = 3
     """The mask of the lights in the photo: 1 on lights, else 0; 1 channel."""
     LIGHTS_CONFIDENCE = 4
-    """Probability that a pixel of the photo is a light, in [0, 1]; 1 channel."""
+    """Confidence that a pixel of the photo is a light, in [0, 1], as SegmentImage.CONFIDENCE; 1 channel."""
     UNWARPED = 5
     """The unwarped image: the plane in frontal view, linear RGB."""
     UNWARPED_VALID = 6
@@ -585,14 +587,15 @@ class WarningCode(IntEnum):
     is the confidence of the fit, in [0, 1], which is below the limit; 0 if no room could be fitted."""
     UNSEEN = 6
     """Much of the mask of a surface is unlike every stroke, or the mask of lamps leaves out regions that partly
-    resemble the painted lamps. The severity is the area of these doubtful pixels, divided by the area of the
-    mask and the doubtful pixels together. The warning points to the pixel where one more stroke helps most."""
+    resemble the painted or proposed lamps. The severity is the area of these doubtful pixels, divided by the
+    area of the mask and the doubtful pixels together. The warning points to the pixel where one more stroke
+    helps most."""
     CONTRADICTORY_STROKES = 7
-    """Strokes of both classes cover the same pixels; the severity is the number of these pixels, divided by the
-    number of samples drawn from the strokes."""
+    """Positive and negative strokes cover the same pixels, where the later strokes count. The severity is the
+    number of these pixels, divided by the number of painted pixels that the segmentation learns from."""
     OFF_IMAGE_STROKES = 8
-    """Pixels of strokes lie outside the photo; the severity is the number of these pixels, divided by the
-    number of samples drawn from the strokes."""
+    """Pixels of strokes lie outside the photo and are ignored. The severity is the number of these pixels,
+    divided by the number of painted pixels that the segmentation learns from."""
     UNCERTAIN_MASK = 9
     """A mask is uncertain; the severity is the expected share of wrong pixels."""
     EMPTY_MASK = 10
@@ -638,8 +641,8 @@ class WarningCode(IntEnum):
     """A texture without any light would differ less from the photo than the synthesised texture does; the
     severity is EmissionReport.error. This warning replaces WarningCode.PATTERN_UNCERTAIN."""
     PROPOSED = 24
-    """A mask is a proposal, because strokes are missing: strokes of one class for the plane, or positive
-    strokes for the lights. The severity is the expected share of wrong pixels."""
+    """A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or
+    both; for the lights, positive strokes. The severity is the expected share of wrong pixels."""
     FAR_FROM_ORIGIN = 25
     """A scene lies far from the origin. There are two cases. If luxfer_scene_get_origin is not 0, positions are
     relative to that origin; the severity is its distance from the origin of the file in metres, and the limit
@@ -671,8 +674,8 @@ class WarningCode(IntEnum):
     artwork."""
     BLEMISH = 31
     """A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The
-    severity is the difference, in units of the difference that places with equal guides typically have. The
-    warning points to the place in the artwork."""
+    severity is the difference in paint between this place and those places, divided by the difference in paint
+    that places with equal guides typically have. The warning points to the place in the artwork."""
 
 
 class IlluminanceImage(IntEnum):
@@ -788,13 +791,14 @@ class GuidesImage(IntEnum):
     """Unit normals in camera space: x right, y up, z towards the camera; 0 where there is no surface; 3
     channels."""
     EDGES = 6
-    """Edges of shapes: 1 on an edge, 0 away from edges; 1 channel."""
+    """Strength of the edges of shapes, in [0, 1]: changes of material, creases and jumps in depth; 1 on a clear
+    edge, 0 away from edges; 1 channel."""
     MATERIALS = 7
     """A colour for each material, derived from its name, so that materials of equal name match in all scenes;
     black where there is no surface; 3 channels."""
     CAUSTICS = 8
-    """Caustics: light that reaches the camera from a diffuse surface, after one or more glossy surfaces,
-    mirrors or clear panes (LS+DE)."""
+    """Caustics: light that glossy surfaces, mirrors or clear panes (one or more of them) cast onto a diffuse
+    surface, which reflects it to the camera (LS+DE)."""
 
 
 class StylizeMode(IntEnum):
@@ -838,8 +842,8 @@ class StylizeVote(IntEnum):
     """Of the overlapping patches' colours, the colour that is nearest to their mean, so that every colour
     occurs in the artwork."""
     MAJORITY = 3
-    """The artwork pixel that most of the overlapping patches put at this pixel. Where two pieces of the artwork
-    meet, each stays whole up to the seam."""
+    """The artwork pixel that the largest number of overlapping patches put at this pixel. Where two pieces of
+    the artwork meet, each stays whole up to the seam."""
     ADAPTIVE = 4
     """A blend of StylizeVote.PLAIN and StylizeVote.MAJORITY. The proportion varies, so that each place of the
     picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has
@@ -945,12 +949,13 @@ class Aov(IntFlag):
     that meet no surface count as 0. Layer Albedo, channels R G B."""
     OBJECT = 64
     """1 + index of the mesh on which more than half of the pixel's hits lie. Without such a majority: 1 + index
-    of any mesh that was hit. 0 where there is no surface. The faces of the luminaire with index i among the
-    punctual lights have the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel X."""
+    of any mesh that was hit. 0 where there is no surface. The luminous opening of the luminaire with index i
+    among the punctual lights has the value m + i + 1, where m is the number of meshes. Layer IndexOB, channel
+    X."""
     MATERIAL = 128
     """1 + index of the material on which more than half of the pixel's hits lie. Without such a majority: 1 +
-    index of any material that was hit. 0 where there is no surface. The faces of luminaires have the value n +
-    1, where n is the number of materials. Layer IndexMA, channel X."""
+    index of any material that was hit. 0 where there is no surface. The luminous openings of luminaires have
+    the value n + 1, where n is the number of materials. Layer IndexMA, channel X."""
     ALPHA = 256
     """Share of the pixel that surfaces cover, in [0, 1]. Layer Alpha, channel A."""
     LUMINANCE = 512
@@ -961,8 +966,8 @@ class Doubt(IntFlag):
     """Doubt, to be combined with |."""
 
     SIZE = 1
-    """No length determines the size, or only with a standard deviation above half of the size. The fields drop,
-    diameter and height then hold only bounds."""
+    """The size is unknown: no length determines it, or its standard deviation exceeds half of it. The fields
+    drop, diameter and height then hold only bounds."""
     KIND = 2
     """The probability of the kind is below 0.9."""
     CLIPPED = 4
@@ -993,7 +998,7 @@ class Lights(IntFlag):
     """Lights, to be combined with |."""
 
     SURFACE = 1
-    """At least one surface emits; the faces of luminaires count."""
+    """At least one surface emits; the luminous openings of luminaires count."""
     TEXTURE = 2
     """At least one emitting surface has an emission texture."""
     POINT = 4
@@ -1033,9 +1038,9 @@ class ContextParams(TypedDict, total=False):
 
     num_threads: int
     """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All
-    jobs share these threads. Synchronous calls, which do their work before they return, never wait for a job:
-    such a call runs on the calling thread, or on a separate set of num_threads threads. Calls that run at the
-    same time use different sets; the context keeps up to four idle sets for later calls."""
+    jobs share these threads. Synchronous calls, which do their work before they return, do not use them, and so
+    never wait for a job. A synchronous call runs on the calling thread, or on a set of num_threads other
+    threads that it has to itself. The context keeps up to four idle sets for later calls."""
     memory_budget_mib: int
     """Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0,
     the default: no limit. A call that would exceed the limit returns Status.OUT_OF_MEMORY. While a picture file
@@ -1332,7 +1337,7 @@ class LuminaireParams(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class Ray:
-    """A ray. An element of arrays, so this struct never changes."""
+    """A ray. Callers pass arrays of this struct, so its size and fields never change in later versions."""
 
     origin: tuple[float, float, float]
     """Start of the ray, in metres."""
@@ -1345,7 +1350,8 @@ class Ray:
 
 @dataclass(frozen=True)
 class Hit:
-    """The nearest hit of a ray. An element of arrays, so this struct never changes."""
+    """The nearest hit of a ray. Callers pass arrays of this struct, so its size and fields never change in
+    later versions."""
 
     t: float
     """Distance of the hit in units of the length of the ray's direction; infinite for a miss."""
@@ -1371,9 +1377,9 @@ class Requirements:
     """Number of textures that change the scattering, the emission or the normals of surfaces."""
     bounces: int
     """Number n of bounces that matter: the smallest positive integer with a^n <= error. Here a is the largest
-    channel of the field albedo, and error is the argument of luxfer_scene_get_requirements. Light with more
-    than n bounces is then at most the share error of all scattered light. 0 if there is no such n. For
-    information only: no rendering ends paths at this number."""
+    channel of the field albedo, and error is the argument of luxfer_scene_get_requirements. With error = 0.01,
+    for example, light with more than n bounces is at most 1 % of all scattered light. 0 if there is no such n.
+    For information only: no rendering ends paths at this number."""
     brightest_material: int
     """Index of the material with the largest albedo; LUXFER_NONE if there are no surfaces."""
     albedo: tuple[float, float, float]
@@ -1435,8 +1441,8 @@ class Candidate:
     """Name of the object or material, in zero-terminated UTF-8. The string lives as long as the
     luxfer_candidates."""
     reason: str
-    """The reason for the score: an English sentence with the figures, in zero-terminated UTF-8. The string
-    lives as long as the luxfer_candidates."""
+    """The reason for the score: an English sentence that states area, level_area, height and the shares of the
+    formula in percent, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates."""
 
 
 class RenderParams(TypedDict, total=False):
@@ -1458,10 +1464,10 @@ class RenderParams(TypedDict, total=False):
     """Seed of the paths; default 1."""
     pixel_error: float
     """Stop when the relative error of every block of 8 x 8 pixels is at most this value, >= 0; 0.1 means within
-    10 % of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 times samples paths
-    per pixel, even if it then misses the target. The relative error of a pixel is e / max(Y, m / 10). Here e is
-    half the width of the 95 % confidence interval of the pixel's luminance Y, and m is the mean of the image.
-    The relative error of a block is the root mean square over its pixels."""
+    10 % of the value, 19 times out of 20. Default 0: no target. A block receives at most 64 * samples paths per
+    pixel (the field samples), even if it then misses the target. The relative error of a pixel is e / max(Y, m
+    / 10). Here e is half the width of the 95 % confidence interval of the pixel's luminance Y, and m is the
+    mean of the image. The relative error of a block is the root mean square over its pixels."""
     preview: float
     """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
     Default 0: no preview, as for final images. The preview does not change the other images."""
@@ -1520,9 +1526,9 @@ class RectifyParams(TypedDict, total=False):
     """Maximum length of the longer side of the unwarped image in pixels, in [16, 16384]; default 2048. The
     image is smaller if the resolution of the photo does not support this size."""
     max_magnification: float
-    """Limit of the magnification by unwarping, in (0, 1e6]; default 16. The farther a part of the plane is from
-    the camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the nearest
-    part by more than this factor are cut off."""
+    """Limit of the magnification by unwarping, a ratio of lengths in (0, 1e6]; default 16. The farther a part
+    of the plane is from the camera, the more its photo pixels are magnified. Parts whose magnification exceeds
+    that of the nearest part by more than this factor are cut off."""
     seed: int
     """Seed of the search; default 1."""
 
@@ -1642,7 +1648,9 @@ class SegmentReport:
     channels: int
     """Channels of the features that the segmentation has used, bit i for channel i."""
     error: float
-    """Expected share of wrong pixels, in [0, 1], estimated on strokes held out of the training."""
+    """Expected share of wrong pixels, in [0, 1]. For a surface, it is estimated on strokes held out of the
+    training. For lamps, it is the area of the lamps, times the share of wrong pixels that is usual in such
+    lamps."""
     negative_samples: int
     """Number of samples of the negative class."""
     positive_samples: int
@@ -1659,8 +1667,9 @@ class EmissionParams(TypedDict, total=False):
     height: int
     """Height of the texture in texels, in [1, 65536]; default 1024."""
     block: int
-    """Side of the square patches that are copied from the exemplar, in [0, 65536]; 0, the default: chosen from
-    the spacing of the lights. It is in pixels of the exemplar after its reduction to working_side."""
+    """Side of the square patches that are copied from the exemplar, in [0, 65536], in pixels of the exemplar
+    after its reduction to working_side. 0, the default: with EmissionLaw.LATTICE, 1.5 times the longer period,
+    but at most half of the exemplar's shorter side; with other laws, a quarter of the shorter side."""
     scale: float
     """Number of unwarped pixels per texel, along one side, in [1e-3, 1e3]; default 1."""
     working_side: int
@@ -1672,15 +1681,15 @@ class EmissionParams(TypedDict, total=False):
     seed: int
     """Seed of the synthesis; default 1."""
     min_regularity: float
-    """The lights count as regular if their autocorrelation after a shift by a period is at least this value, in
-    [0, 1]; default 0.6. At 0 the texture continues any repetition exactly; at 1 it continues no repetition, and
-    patches may lie anywhere."""
+    """Threshold of EmissionLaw.CORRELATION, in [0, 1]; default 0.6. A shift counts as a period of the lights if
+    their autocorrelation after this shift is at least this value. At 0, even a poor repetition counts.
+    EmissionLaw.BEST also tries periods with a lower autocorrelation. At 1, both choose EmissionLaw.FREE."""
     whole_lamps: int
     """1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps."""
     offset: Sequence[float]
     """Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6,
-    1e6]; default 0. If the lights form no lattice, the offset shifts the lamps of a tileable texture, and must
-    be 0 for other textures."""
+    1e6]; default 0. With EmissionLaw.FREE, the pattern has no fixed place: the offset must be 0, unless the
+    texture is tileable and no light is copied patch by patch. It then shifts all lamps."""
     clip_level: float
     """A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The
     clipped core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with
@@ -1689,16 +1698,16 @@ class EmissionParams(TypedDict, total=False):
     """1: every lamp has its mean colour over its whole area; 0, the default: lamps look as in the photo."""
     tileable: int
     """1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the
-    opposite edge. A lattice is stretched so that a whole number of periods fits; the width and the height of
-    the pattern change by less than half a period. Needs whole_lamps. Default 0."""
+    opposite edge. Lights with periods are stretched so that a whole number of periods fits; the width and the
+    height of the pattern change by less than half a period. Needs whole_lamps. Default 0."""
     centred: int
-    """1: a lattice is centred on the texture: a lamp, or the middle between two lamps, lies at the texture's
-    centre, so that the border cuts as few lamps as possible. The field offset shifts the lattice from there.
-    Default 0."""
+    """1: the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps,
+    lies at the texture's centre, whichever lets the border cut the fewest lamps. The field offset shifts the
+    pattern from there. Default 0. No effect with EmissionLaw.FREE."""
     candidates: int
-    """Number of patches, drawn at random from the exemplar, that are compared for each patch of the texture if
-    the lights form no lattice; in [1, 65536]; default 192. The patches that continue neighbouring patches are
-    compared in addition."""
+    """For EmissionLaw.FREE: number of patches, drawn at random from the exemplar, that are compared for each
+    patch of the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the patches already
+    placed beside it are compared in addition."""
     law: EmissionLaw | str | int
     """The law: the rule by which the texture continues the lights of the exemplar, EmissionLaw other than
     EmissionLaw.COPY; default EmissionLaw.BEST."""
@@ -1716,20 +1725,20 @@ class EmissionParams(TypedDict, total=False):
 @dataclass(frozen=True)
 class EmissionReport:
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
-    quality. A composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error
-    is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe
-    the first one."""
+    quality. A composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its
+    sampling_error is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and
+    margin describe the first one."""
 
     luminaires: int
     """Number of luminaires in the texture; see luxfer_emission_get_luminaire."""
     error: float
     """Largest relative difference between texture and exemplar in three statistics: the share of lit area, the
-    area of whole lamps, and the distance from a lamp to its nearest neighbour. The value 0.1 stands for 10 %.
-    It means little if exemplar_lamps is small. NaN for a composition."""
+    mean area of a whole lamp, and the mean distance from a whole lamp to its nearest neighbour. The value 0.1
+    stands for 10 %. It means little if exemplar_lamps is small. NaN for a composition."""
     regularity: float
-    """Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period, and of two
-    periods the lower value. 0 if the lights have no period, or if the period was found from the distances
-    between lamps."""
+    """Regularity of the lights, in [0, 1]: their autocorrelation after a shift by one period. If there are two
+    periods, it is the lower of their two autocorrelations. 0 if the lights have no period, or if the period was
+    found from the distances between lamps."""
     exemplar_lamps: int
     """Number of whole lamps in the exemplars. If it is below six, the statistics in the field error are
     unreliable, because the border then cuts a large share of the lamps. If there is no whole lamp, the texture
@@ -1740,7 +1749,8 @@ class EmissionReport:
     ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with
     those of parts of the texture that are as large as the exemplar. If error is at most twice this value, it
     does not indicate a bad texture. 0 for EmissionLaw.WHOLE and EmissionLaw.COPY, for several exemplars, for a
-    composition, and if the texture is hardly larger than the exemplar."""
+    composition, and if the texture is too small to hold parts as large as the exemplar at clearly different
+    places."""
     law: EmissionLaw
     """The law (rule) by which the texture continues the lights: EmissionLaw."""
     runner_up: EmissionLaw
@@ -1752,9 +1762,9 @@ class EmissionReport:
     predict nothing and have a fixed score. NaN if no score was computed, for example because too few of the
     lights are whole lamps."""
     margin: float
-    """law_score minus the score of runner_up; NaN if law_score is NaN. It is negative if the law was chosen
-    although runner_up scores slightly better: EmissionLaw.BEST prefers the law of EmissionLaw.CORRELATION, and
-    lattices along the axes of the room."""
+    """law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is
+    NaN. It is negative if the law was chosen although runner_up scores slightly better: EmissionLaw.BEST
+    prefers the law of EmissionLaw.CORRELATION, and lattices along the axes of the room."""
 
 
 @dataclass(frozen=True)
@@ -1839,8 +1849,8 @@ class PatternParams(TypedDict, total=False):
     rotation: float
     """Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
     offset: Sequence[float]
-    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. Lamps without a
-    lattice have no fixed places: for them, a shift other than 0 is an error unless the texture is tileable."""
+    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With EmissionLaw.FREE,
+    lamps have no fixed places: a shift other than 0 is then an error unless the texture is tileable."""
     margin: float
     """Minimum distance in metres of lamps from the edge of the surface and from the zones of
     luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as
@@ -2243,7 +2253,7 @@ class GlareReport:
     """Solid angle of all sources in steradians."""
     unseen_lights: int
     """Number of lights of the rendered scene that shine from points: point lights, spot lights, and luminaires
-    without faces. They are invisible in the image, and ugr leaves them out. Known only for images of
+    without luminous opening. They are invisible in the image, and ugr leaves them out. Known only for images of
     luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires,
     the scene has WarningCode.NOT_IN_PICTURE."""
 
@@ -2383,8 +2393,8 @@ class PendantsParams(TypedDict, total=False):
     used with a rectification."""
     focal_error: float
     """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0
-    stands for the standard deviation that the rectification has; it has one only for a focal length that was
-    assumed or read from metadata."""
+    stands for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It
+    is 0 only if the rectification was given the focal length."""
     axes_error: float
     """Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5];
     default 0. Not used with a rectification, which has its own value."""
@@ -2468,7 +2478,8 @@ class StylizeParams(TypedDict, total=False):
     search: StylizeSearch | str | int
     """Search for nearest patches: StylizeSearch; default StylizeSearch.PATCHMATCH."""
     patch: int
-    """Width of a patch in pixels, odd, in [1, 33]; default 5."""
+    """Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if the images are smaller
+    than that."""
     guide_weight: float
     """Weight of all guides together, relative to the weight of all colour channels of the artwork together, in
     [0, 1e6]; default 2."""
@@ -2493,17 +2504,19 @@ class StylizeParams(TypedDict, total=False):
     """Maximum number of matching passes under the error budget in one round (EM iteration), in [1, 1000];
     default 6."""
     settle: int
-    """Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration, a target
-    patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams."""
+    """Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration,
+    a target patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer
+    seams."""
     seam: float
     """Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between
     two neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the
     iterations after each matching; see settle."""
     vote: StylizeVote | str | int
-    """How a pixel is computed from overlapping patches: StylizeVote; default StylizeVote.WEIGHTED."""
+    """How a pixel is computed from overlapping patches in all rounds but the last: StylizeVote; default
+    StylizeVote.WEIGHTED."""
     final_vote: StylizeVote | str | int
-    """How a pixel of the final picture is computed from overlapping patches: StylizeVote; default
-    StylizeVote.ADAPTIVE."""
+    """How a pixel of the final picture, after the last round, is computed from overlapping patches: a
+    StylizeVote; default StylizeVote.ADAPTIVE."""
     preview: int
     """1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
     default: full resolution."""
@@ -2527,10 +2540,10 @@ class StylizeParams(TypedDict, total=False):
     has 6."""
     occurrence: float
     """Weight lambda of the penalty for patches that are used often, in StylizeMode.OCCURRENCE, in [0, 10]; with
-    0, the mode equals StylizeMode.NEAREST. Default 0.1, which Kaspar et al. 2015 use (Fig. 10n). The penalty is
-    added to the distance of a match (their Eq. 1), which is the weighted sum of squared differences over the
-    pixels of a patch, with channels in [0, 1]. A patch that is used as often as the average has the penalty
-    lambda."""
+    0, the mode equals StylizeMode.NEAREST. Default 0.1, which Fiser et al. 2016 chose for their picture of this
+    method (their Fig. 10n). The penalty is added to the distance of a match (their Eq. 1), which is the
+    weighted sum of squared differences over the pixels of a patch, with channels in [0, 1]. A patch that is
+    used as often as the average has the penalty lambda."""
 
 
 @dataclass(frozen=True)
@@ -2651,8 +2664,8 @@ class PlanReport:
     relight_error: float
     """Predicted value of RelightReport.error; 0 unless the plan is of a transfer."""
     render_seconds: float
-    """Predicted seconds for rendering, including the preparation of the scene in a plan of a transfer; 0 in a
-    plan of a stylisation."""
+    """Predicted seconds for rendering. In a plan of a transfer, they include the preparation of the scene; in a
+    plan of a rendering they do not, because the plan has already prepared it. 0 in a plan of a stylisation."""
     render_error: float
     """Predicted value of RenderReport.error; 0 in a plan of a stylisation."""
 
