@@ -23,6 +23,8 @@ STAGES = "transfer rectify features segment emission relight scene"
 #: Functions that have another name.
 RENAMED = {
     "version": "get_version",
+    "emission_start_plan": "emission_start_composition",
+    "stylize_params_preset": "stylize_get_preset",
     "version_string": "get_version_string",
     "status_name": "status_get_name",
     "warning_name": "warning_get_name",
