@@ -185,7 +185,7 @@ fn add_lamps(
     scene: *mut luxfer_scene,
     lamp: &luxfer_pendant,
     places: &[f64],
-    count: u32,
+    count: usize,
     diameter: f32,
     luminance: f32,
 ) -> (luxfer_status, u32, u32) {
