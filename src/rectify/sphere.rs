@@ -220,13 +220,14 @@ struct Row {
     /// Weight of the line at zero residual (`base_weight`), and after multiplication by the biweight (`weight`).
     base_weight: f64,
     weight: f64,
-    /// Variance of the sine if the endpoints have noise of unit variance. It is the variance of the segment's
+    /// Variance of `sine` if the endpoints have noise of unit variance. It is the variance of the segment's
     /// direction plus the variance of the direction from the segment's midpoint to the vanishing point; the second
     /// term matters for segments near the point.
     variance: f64,
     /// Variance of the line's residual if the endpoints have noise of unit variance. Residuals are scaled such that
     /// lines with a residual above 1 are rejected.
     residual_variance: f64,
+    /// Sine of the angle between the segment and the direction from its midpoint to the vanishing point.
     sine: f64,
 }
 

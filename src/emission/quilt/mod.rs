@@ -115,8 +115,8 @@ pub fn place(
 }
 
 /// Returns the sides of a block, and all positions in the exemplar at which the block contains usable pixels only, as
-/// the indices of its upper left pixel. Patches without a lattice need at least one such position, so the sides shrink
-/// by a quarter until there is one.
+/// the indices of its upper left pixel. If there is no such position, the sides shrink by a quarter, repeatedly, until
+/// there is one: a texture without a lattice is made of blocks from these positions.
 fn admissible_corners(
     usable: &AreaSums,
     width: usize,

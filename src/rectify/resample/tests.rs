@@ -57,9 +57,10 @@ fn warps_are_means_over_the_footprints_of_pixels() {
         let [to, from] = [256.0, -32.0].map(|c| DMat3::from_translation(DVec2::splat(c)));
         Homography(to * map * from)
     };
-    // The maps are rotations, tilts, and scales that need pyramid levels and several parts per footprint. The last
-    // number is the minimum peak signal-to-noise ratio in dB; in the first case the reference's own discretisation
-    // limits it.
+    // The maps are the identity, a rotation, and tilts and reductions, for which the filter uses pyramid levels and
+    // divides the footprint of a pixel into several parts. The last number is the minimum peak signal-to-noise ratio in
+    // dB. It is the ratio to the mean of the drawing over the footprint, from 12 × 12 samples; in the first case, these
+    // samples limit the ratio.
     for (turn, scale, tilt, min_decibels) in [
         (0.0, 1.0, DVec2::ZERO, 50.0),
         (0.4, 1.0, DVec2::ZERO, 38.0),

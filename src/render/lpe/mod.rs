@@ -85,9 +85,10 @@ impl Expression {
     }
 }
 
-/// Built-in expressions with their names, after Arnold. "direct" is light from any source, including the environment
-/// and emissive surfaces; "specular" is glossy and mirror reflection. With every [`EmitterAs`], `emission`,
-/// `background`, and the direct and indirect light of all kinds add up to the whole image.
+/// Built-in expressions with their names, after Arnold. "direct" is light that is scattered once on its way from a
+/// source to the camera. A source is a light, the environment or an emissive surface. "specular" is glossy and mirror
+/// reflection. Whichever [`EmitterAs`] is chosen, `emission`, `background`, and the direct and indirect light of all
+/// kinds add up to the whole image.
 pub const BUILT_IN: &[(&str, &str)] = &[
     ("RGBA", "C.*"),
     ("beauty", "C.*"),
