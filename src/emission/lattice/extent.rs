@@ -79,8 +79,8 @@ pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
 
 /// The periods along x and along y with which an exemplar repeats as a whole, in unwarped pixels. The texture should
 /// have the same lit share as the visible part of the plane. So the area of a repetition is the area of the lights that
-/// it copies, divided by that share. It is smaller than the exemplar if some corners of the exemplar are not visible, or
-/// if cut lamps are left out. A period is lengthened where the lamps of adjacent repetitions would come too close.
+/// it copies, divided by that share. It is smaller than the exemplar if some corners of the exemplar are not visible,
+/// or if cut lamps are left out. A period is lengthened where the lamps of adjacent repetitions would come too close.
 ///
 /// A single lamp in a photo shows no spacing, so it repeats in squares, if the exemplar has room for the lamp.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
