@@ -21,7 +21,8 @@ use std::ops::Range;
 /// [convention: Embree's builders give both equal costs]
 const PACKET_COST: f32 = 1.0;
 
-/// Number of branches processed between two checks for cancellation: one part may hold nearly the whole tree.
+/// Number of branches processed between two checks for cancellation. One check per part would be too few, because one
+/// part may hold nearly the whole tree.
 const CHUNK: usize = 1 << 14;
 
 pub(super) struct Source<'a> {
@@ -141,8 +142,8 @@ impl CostedPart {
         (branch.count, branch.surface, branch.cost) = (count, surface, cost);
     }
 
-    /// Whether the branch becomes a packet of triangles if it is represented by a single wide subtree. It does if it
-    /// has at most eight triangles, and if a packet costs at most as much as a node.
+    /// Whether the branch becomes a packet of triangles if it is represented by a single wide subtree. A leaf always
+    /// does. Any other branch does if it has at most eight triangles, and if a packet costs at most as much as a node.
     pub fn is_packet(&self, at: usize) -> bool {
         let branch = &self.branches[at];
         branch.count <= WIDTH as u32

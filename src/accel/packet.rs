@@ -93,9 +93,9 @@ impl Packet {
         [[sheared(0, 0), sheared(1, 0), sheared(2, 0)], [sheared(0, 1), sheared(1, 1), sheared(2, 1)], z]
     }
 
-    /// Computes the edge functions, and recomputes those that are zero in `f64`: there, products of two `f32` are
-    /// exact, so the sign of their difference is exact. The function starts from the corners again, so that its caller
-    /// need not keep intermediate values in registers for this rare case.
+    /// Computes the edge functions in `f32`. Where one is zero, computes it again in `f64`: a product of two `f32` is
+    /// exact in `f64`, so the sign of the difference of two products is exact. The function starts from the corners
+    /// again, so that its caller need not keep intermediate values in registers for this rare case.
     #[cold]
     #[inline(never)]
     fn settled_edges<L: Lanes>(&self, ray: &TriangleRay) -> [L; 3] {

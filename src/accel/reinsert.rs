@@ -62,8 +62,8 @@ impl<'a> Reinsertion<'a> {
         Ok(Self { tree, touched })
     }
 
-    /// For each given share of the nodes, returns a threshold of half the surface area. At most this share of all nodes
-    /// reach the threshold. It can be fewer, because thresholds are boundaries of histogram bins.
+    /// Returns one threshold for each of `shares`. At most this share of all nodes have a box whose half surface area
+    /// reaches the threshold. It can be fewer, because thresholds are boundaries of histogram bins.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << AREA_BIN_BITS];
@@ -192,7 +192,8 @@ impl<'a> Reinsertion<'a> {
 }
 
 /// A pair of siblings beside which the subtree may be placed. The second number is the index of the first sibling. The
-/// first number is the decrease of the total half area at these positions, with the box of the new parent left out.
+/// first number is the decrease of the total half area if the subtree moves beside either sibling, with the box of the
+/// new parent left out.
 type Candidate = (f32, u32);
 
 /// The search for the best position of one subtree.

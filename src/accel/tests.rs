@@ -158,7 +158,8 @@ fn empty_scenes_needles_and_invalid_triangles_are_handled() {
 
 #[test]
 fn a_long_chain_of_nested_triangles_needs_no_deep_stack() {
-    // The sizes run from 1e-12 to 1e12, so the tree cannot be balanced.
+    // The sizes run from 1e-12 to 1e12. Three quarters of the triangles lie in one cell of the Morton grid, so their
+    // codes do not separate them.
     let triangles: Vec<[Vec3; 3]> = (0..2000)
         .map(|i| {
             let size = 10f32.powf(-12.0 + i as f32 * 0.012);

@@ -85,8 +85,8 @@ impl Accel {
         }
     }
 
-    /// The AVX2 code compiled with AVX-512 encoding, whose 32 registers and broadcast operands make it slightly
-    /// faster. No use of the wider registers themselves pays (docs/notes/rays.md).
+    /// The AVX2 code compiled with AVX-512 encoding, whose 32 registers and broadcast operands make it slightly faster.
+    /// Code that computes in 512-bit registers was no faster (docs/notes/rays.md).
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl")]
     fn traverse_avx512<const ANY: bool>(

@@ -33,7 +33,7 @@ const OTHER: f64 = 0.5;
 const SIDES: [f64; 2] = [0.05, 3.0];
 /// Share of the length of a lamp's side that is luminous; the frame takes up the rest. [convention]
 const SHINES: f64 = 0.96;
-/// Standard deviation of the logarithm of a measured side. Its causes are frames, blur, and errors of the view.
+/// Standard deviation of the logarithm of a measured side. Its causes are frames, blur, and errors of the unwarping.
 /// [bench photos:real]
 const SIDE_ERROR: f64 = 0.07;
 
@@ -77,7 +77,8 @@ fn prior(log_metres: f64) -> f64 {
     PRIOR.iter().map(|[weight, median, deviation]| weight * normal(log_metres - median.ln(), *deviation)).sum()
 }
 
-/// Probability density of the logarithms of a lamp's two sides, if the plane is at the given distance.
+/// Probability density of the logarithms of a lamp's two sides, if the plane is at the given distance. If the sides are
+/// not positive and finite, the density is the same for all distances.
 fn likelihood(log_metres: f64, sides: [f64; 2]) -> f64 {
     let any = OTHER / (SIDES[1] / SIDES[0]).ln().powi(2);
     if !sides.iter().all(|side| side.is_finite() && *side > 0.0) {

@@ -75,7 +75,7 @@ pub struct Params {
     pub max_magnification: f64,
     /// Copies every lamp as a whole. If false, seams may cut lamps, as in the paper.
     pub whole_lamps: bool,
-    /// Every lamp shines evenly, in its mean colour.
+    /// Gives every lamp one uniform colour: its mean colour.
     pub even_lamps: bool,
     /// Gives all lamps of a kind one size and one outline that is exact at any resolution, and places them exactly on
     /// their lattice. Needs the photo and `whole_lamps`; otherwise each lamp keeps the outline of the light mask.

@@ -26,7 +26,7 @@ const BRUSHES: [Brush; 3] = [
 
 /// Returns the colour that the painter mixes for a pixel. Objects have one palette of four paints, table and wall
 /// another, each from dark to light. The light of the scene selects the place in the palette; the colours of the scene
-/// are not used. Red indirect light adds purple (objects) or red, and a highlight adds white.
+/// are not used. Red indirect light adds purple on objects, and red on table and wall. A highlight adds white.
 fn mixed(s: &Appearance) -> Vec3 {
     let ramp = |stops: &[Vec3; 4], t: f32| {
         let t = t.clamp(0.0, 1.0) * 2.999;
@@ -95,8 +95,8 @@ fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mu
     let shift = Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32()) - 0.5;
     let colour = mixed(&here) * (0.93 + 0.14 * rng.next_f32()) + 0.07 * shift;
 
-    // Run the stroke along the form of the object, or slanted on table and wall. End it where the object ends or the
-    // colour differs too much.
+    // Run the stroke along the form of the object, or slanted on table and wall. End it where the object ends, or where
+    // the colour differs too much from the colour at the start.
     let lean = if here.is_object { 0.25 } else { -0.75 } + 0.35 * (rng.next_f32() - 0.5);
     let length = brush.length * unit * (0.4 + 0.6 * rng.next_f32());
     let (bend, wobble) = (0.006 / unit * (rng.next_f32() - 0.5), rng.next_u32() as u64);

@@ -26,7 +26,7 @@ struct Set {
 
 /// Returns the drawing weight for places darker than `tone`: 0 at `tone`, 1 where the tone is lower by 0.25.
 fn below(appearance: &Appearance, tone: f32) -> f32 {
-    // Leave highlights blank, whatever surrounds them.
+    // Leave highlights blank, however dark they are.
     if appearance.shine > 0.6 { 0.0 } else { (tone - appearance.tone) * 4.0 }
 }
 
@@ -135,7 +135,8 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
         if (set.weight)(subject.at(start)) <= 0.05 || drawn.is_near(start, keep, line) {
             continue;
         }
-        // Trace the line in both directions from its start, as far as there is something to draw.
+        // Trace the line from its start in both directions. Stop at the edge of the object, where the drawing weight is
+        // 0, near another line, or at half the length.
         let lean = set.turn + 0.10 * (rng.next_f32() - 0.5);
         let half_length = set.length * unit * (0.35 + 0.65 * rng.next_f32()) / 2.0;
         let mut ends = [Vec::new(), Vec::new()];

@@ -51,8 +51,8 @@ pub fn draw(subject: &Subject) -> Result<Canvas> {
     Ok(canvas)
 }
 
-/// Maximum distance between dots, in radii of a dot. Dots farther apart look like single spots and not like a tone.
-/// [convention]
+/// Upper limit of the distance that a dot keeps from other dots, in radii of a dot. Dots farther apart look like single
+/// spots and not like a tone. [convention]
 const MAX_SPACING: f32 = 9.0;
 
 fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<()> {

@@ -4,8 +4,8 @@
 use super::statistics::nearest_distances;
 use glam::DVec2;
 
-/// Longest distance between two points that is compared, as a multiple of the mean distance between nearest neighbours.
-/// [convention: the statistic is defined with it]
+/// Only pairs of points up to this distance apart are compared. It is a multiple of the mean distance between nearest
+/// neighbours. [convention: part of the definition of this statistic]
 const MAX_DISTANCE: f64 = 2.5;
 /// Half width of the Epanechnikov kernel that smooths the distances, as a multiple of the mean distance between nearest
 /// neighbours. Stoyan and Stoyan recommend 0.15 / √λ for a density of λ points per area; on a square lattice, 1 / √λ is
@@ -90,7 +90,8 @@ mod tests {
         assert!(between(&plain, &grid(DVec2::splat(3.0), 0.0, 1)) < 1e-9);
         assert!(between(&plain, &grid(DVec2::splat(20.0), 4.0, 2)) < 0.15);
         assert!(between(&plain, &scattered) > 0.35);
-        // A part of the grid in a smaller window must agree, because the weights correct for the window.
+        // A part of the grid in a smaller window must agree with the whole grid, because the weights correct for the
+        // window.
         let part: Vec<DVec2> = plain.iter().copied().filter(|p| p.x < 400.0 && p.y < 400.0).collect();
         let part = Points { at: &part, size: DVec2::splat(400.0) };
         assert!(distance(&Points { at: &plain, size }, &part).unwrap() < 0.02);

@@ -22,8 +22,8 @@ pub struct Statistics {
     pub luminance: f64,
     /// Mean area of a whole lamp; 0 if there is none.
     pub area: f64,
-    /// Mean distance from a whole lamp to the nearest other whole lamp. A whole lamp is left out if a cut lamp is even
-    /// nearer, because the distance to the centre of a cut lamp is unknown. 0 if no lamp remains.
+    /// Mean distance from a whole lamp to the nearest other whole lamp. Whole lamps to which a cut lamp lies nearer are
+    /// left out, because the distance to the centre of a cut lamp is unknown. 0 if no lamp remains.
     pub spacing: f64,
     /// Number of whole lamps.
     pub whole: usize,
@@ -63,7 +63,8 @@ impl Statistics {
             }
         }
 
-        // Average over the whole lamps. Weight each lamp by the position of its centre, for the same reason.
+        // Average over the whole lamps. Weight each lamp by the position of its centre, so that the mean does not
+        // depend on the place where the border cuts the pattern.
         let lamps: Vec<(DVec2, f64)> =
             components.list.iter().zip(*whole).filter(|(_, w)| **w).map(|(c, _)| (c.centre, c.area as f64)).collect();
         let place = |at: DVec2| weight(at.x, *width, periods[0]) * weight(at.y, *height, periods[1]);
@@ -149,7 +150,7 @@ pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
 fn weight(at: f64, side: usize, period: Option<f64>) -> f64 {
     let side = side as f64;
     let Some(period) = period else { return (PI * at / side).sin().powi(2) };
-    // If the axis is no longer than one period, all positions have equal weights.
+    // All positions have equal weights if the axis is no longer than one period, or a whole number of periods long.
     let spare = if period < side { side % period } else { 0.0 };
     if spare > 0.0 { (at.min(side - at) / spare).min(1.0) } else { 1.0 }
 }

@@ -21,8 +21,8 @@ use evidence::Evidence;
 use glam::DVec2;
 use sites::Sites;
 
-/// Lattices and rows are also proposed from parts of the exemplar in which the magnification is at most one of these
-/// values. Magnification is relative to the least magnified pixel. [judged on 20 photos]
+/// For each of these values, lattices and rows are also proposed from a part of the exemplar: the part that unwarping
+/// magnifies at most this many times as much as the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
 /// Limits for shifts that are proposed as periods. `MIN_CORRELATION`: minimum autocorrelation of the lights at the
 /// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of this value to its highest value over all shifts. `MAX_SHIFTS`:
@@ -186,8 +186,8 @@ impl Analysis {
         proposals.retain(|p| p.score.is_finite());
         let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
 
-        // Turn lattices parallel to the axes of the unwarped image if they predict the lamps nearly as well after the
-        // turn.
+        // Make the periods of lattices exactly parallel to the axes of the unwarped image, if the lattice then predicts
+        // the lamps nearly as well.
         let own = own.aligned(exemplar, score);
         proposals.iter_mut().for_each(|p| *p = p.aligned(exemplar, score));
 

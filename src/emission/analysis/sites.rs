@@ -41,7 +41,7 @@ pub struct Site {
     pub unmarked: f64,
     pub missing: f64,
     /// `holes`: the part of `missing` that lies between lamps of the site, in photo pixels. `hole_count`: the number of
-    /// these positions.
+    /// positions between lamps of the site at which a predicted lamp is missing.
     pub holes: f64,
     pub hole_count: usize,
     /// First and last cell, along both periods, in which the pattern continues; cell 0 holds `at`. If predicted lamps
@@ -130,8 +130,8 @@ impl Sites {
         self.basis[0] * cells.x + if self.is_row { DVec2::ZERO } else { self.basis[1] * cells.y }
     }
 
-    /// Moves site `k` to the mean position of its lamps, weighted by their photo pixels. Also measures where the
-    /// lattice predicts a lamp of this site in full view but the light mask shows none.
+    /// Moves site `k` to the mean position of its lamps, weighted by their photo pixels. Then finds the positions where
+    /// the lattice predicts a lamp of this site in full view but the light mask shows none.
     fn weigh(&mut self, k: usize, all: &[MeasuredLamp], exemplar: &Exemplar) {
         let lamps = &self.list[k].lamps;
         let first = lamps[0];

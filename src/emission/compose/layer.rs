@@ -63,7 +63,8 @@ pub struct Layer {
     pub smaller_photos: Vec<Image>,
     /// The blocks of the exemplar that have light; `None` if the renderer does not need them.
     pub lit_blocks: Option<LitBlocks>,
-    /// The mean colour of each component, if lamps shine evenly; else `None`.
+    /// The mean colour of each component, if each lamp is drawn in its mean colour ([`Params::even_lamps`]); else
+    /// `None`.
     pub even: Option<Vec<Vec3>>,
     /// Unwarped pixels per texel.
     pub scale: f64,
@@ -155,7 +156,7 @@ impl Layer {
     /// but only where its pattern has not ended. If lamps are drawn from designs, the areas of the designs replace the
     /// measured areas.
     pub fn statistics(&self, unwarped: &Image) -> Statistics {
-        // If the exemplar repeats as a whole, the exemplar itself is one period, for which infinity stands.
+        // If the exemplar repeats as a whole, the exemplar itself is one period. An infinite period stands for this.
         let periods = match self.law {
             Law::Whole(_) => [Some(f64::INFINITY); 2],
             other => other.periods(),

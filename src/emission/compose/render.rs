@@ -98,7 +98,7 @@ impl Row<'_> {
         }
     }
 
-    /// Adds the lamps that are copied as a whole to the row.
+    /// Adds to the row the lamps that are copied as a whole.
     fn add_lamps(&mut self, source: &TexelSource, bands: &Bands) {
         for &(i, range) in bands.of_row(self.y) {
             let [x0, y0, x1, y1] = range.map(|r| r as usize);
@@ -117,7 +117,7 @@ impl Row<'_> {
         }
     }
 
-    /// Adds the lights that are copied patch by patch to the row.
+    /// Adds to the row the lights that are copied patch by patch.
     fn add_patches(&mut self, source: &TexelSource, blend: &Blend, k: usize) {
         let size = DVec2::new(blend.width as f64, blend.height as f64);
         for x in self.first..self.first + self.coverage.len() {

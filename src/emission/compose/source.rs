@@ -75,7 +75,8 @@ impl TexelSource<'_> {
         blocks.is_none_or(|blocks| blocks.may_reach(set, self.corner(x, y, shift), self.layer.scale))
     }
 
-    /// The corner of the part of the exemplar that a texel shows, in unwarped pixels.
+    /// A texel shows a square of the exemplar. Returns the corner of this square with the smallest coordinates, in
+    /// unwarped pixels.
     fn corner(&self, x: usize, y: usize, shift: DVec2) -> DVec2 {
         DVec2::new(x as f64, y as f64) * self.layer.scale - self.layer.rounded(shift)
     }
@@ -189,7 +190,8 @@ impl TexelSource<'_> {
         })
     }
 
-    /// Replaces clipped channels of `value`, a colour of the component with the given label, by channels of its rim.
+    /// Replaces clipped channels of `value`, a colour of the component with the given label, by channels of the colour
+    /// of this component's rim. Returns `value` unchanged if the component has no rim colour.
     fn unclipped(&self, label: u32, value: Vec3) -> Vec3 {
         match (&self.layer.rim_colours, label.checked_sub(1)) {
             (Some(rim_colours), Some(component)) => rim_colours.undo(component as usize, value),

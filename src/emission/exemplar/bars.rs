@@ -28,7 +28,8 @@ const MAX_HIDDEN_SECTIONS: usize = 2;
 /// Where the photo is sharp, a section ([`Section`]) shows no bar if its depth is below this share of the whole bar's
 /// depth. [bench photos:tune]
 const MIN_SECTION_DEPTH: f32 = 0.25;
-/// Bars have a period if the distances between them deviate from their mean by at most this share. [bench photos:tune]
+/// Bars have a period if the distances between neighbouring bars deviate from their mean by at most this share.
+/// [bench photos:tune]
 const MAX_SPACING_DEVIATION: f64 = 0.12;
 
 /// A plane with lights in the unwarped image, and the map from unwarped pixels into the photo.

@@ -141,7 +141,7 @@ mod tests {
         assert_eq!(found.list[1].centre, DVec2::new(5.5, 0.5));
         assert!(found.labels.iter().zip(&lit).all(|(&l, &on)| (l != 0) == on));
 
-        // The result must equal that of an image without the removed component's pixels.
+        // The result must equal the components of an image without the removed component's pixels.
         let (mut rest, gone) = (found, 1);
         let label = gone as u32 + 1;
         let alone = find(6, 4, |i| lit[i] && rest.labels[i] != label).unwrap();

@@ -52,8 +52,8 @@ pub struct Exemplar {
 }
 
 impl Exemplar {
-    /// Analyses the input. If `max_magnification` is above 0, parts that unwarping magnifies more are left out.
-    /// Errors: no valid pixel, no light (`Degenerate`).
+    /// Analyses the input. If `max_magnification` is above 0, leaves out the parts that unwarping magnifies more than
+    /// this many times as much as the least magnified pixel. Errors: no valid pixel, no light (`Degenerate`).
     pub fn new(input: &Input, working_side: f64, max_magnification: f64, job: Job) -> Result<Self> {
         let Input { unwarped: image, light, .. } = *input;
         let (width, height) = (image.width, image.height);
@@ -161,8 +161,8 @@ impl Exemplar {
         self.components.list.iter().enumerate().filter(|(k, _)| self.roles[*k].is_piece())
     }
 
-    /// The part of the exemplar with at most `max_magnification` relative to the least magnified pixel; `None` if that
-    /// is the whole exemplar, or without a photo.
+    /// The part of the exemplar that unwarping magnifies at most `max_magnification` times as much as the least
+    /// magnified pixel. `None` if this part is the whole exemplar, or without a photo.
     pub fn magnification_limit(&self, max_magnification: f64) -> Option<MagnificationLimit> {
         MagnificationLimit::new(self.to_photo?, (&self.shown, self.width), max_magnification)
     }

@@ -184,8 +184,8 @@ mod tests {
 
     #[test]
     fn bars_that_no_longer_show_go_on_by_their_period() {
-        // The bars between rows are visible only where y < 150. Without a homography, all parts count as equally sharp,
-        // so a part that shows no bar has none.
+        // The bars between the rows of panes are visible only where y < 150. Without a homography, all parts count as
+        // equally sharp, so a part that shows no bar has none.
         let fading = |x: usize, y: usize| if y < 150 || is_bar(x) { 0.5 } else { 1.0 };
         assert_eq!(panes(&ceiling(fading)).unwrap().len(), 24);
         // With a homography that makes the lower rows ever less sharp, the period predicts the bars there.

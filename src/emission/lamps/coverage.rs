@@ -43,8 +43,8 @@ impl<'a> Lights<'a> {
     }
 
     /// The coverage of a texel relative to full coverage. For a texel of a lamp, full coverage is the largest coverage
-    /// of this lamp's texels, and the result is at least 0.5. For any other texel, it is the largest value of the lamps
-    /// beside it, and the result is at most 0.5. `None` outside the texture.
+    /// of this lamp's texels, and the result is at least 0.5. For any other texel, full coverage is the largest such
+    /// value of the adjacent lamps, and the result is at most 0.5. `None` outside the texture.
     pub fn coverage(&self, at: [isize; 2]) -> Option<f64> {
         let i = self.index(at)?;
         let around = AROUND.iter().filter_map(|[u, v]| self.label([at[0] + u, at[1] + v]));

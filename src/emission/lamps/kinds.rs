@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn lamps_of_a_few_texels_are_one_kind_where_rounding_alone_tells_them_apart() {
-        // Discs with a diameter of 5 texels, whose centres lie at different positions within a texel.
+        // Discs with a diameter of about 5 texels, whose centres lie at different positions within a texel.
         let is_lit = |p: DVec2| {
             let cell = (p / 20.0).floor();
             let aside = DVec2::new((cell.x * 0.37).fract(), (cell.y * 0.61 + cell.x * 0.17).fract());

@@ -23,8 +23,9 @@ use glam::{DMat2, DVec2};
 /// of visible cells, from the site's first to its last lamp, in which a lamp shines at the site. Cells are weighted by
 /// photo pixels. [bench emission:perspective]
 const MIN_OCCUPANCY: f64 = 0.93;
-/// If a site is dark in at most `MAX_FEW_DARK` of these cells, something may hide the missing lamps. An occupancy of
-/// `MIN_OCCUPANCY_FEW_DARK` then suffices. [judged on 20 photos]
+/// Something may hide the missing lamps of a site that is dark in few visible cells between its first and its last
+/// lamp. If there are at most `MAX_FEW_DARK` such cells, an occupancy of `MIN_OCCUPANCY_FEW_DARK` suffices.
+/// [judged on 20 photos]
 const MIN_OCCUPANCY_FEW_DARK: f64 = 0.5;
 const MAX_FEW_DARK: usize = 2;
 /// A lamp counts as sharp if the number of photo pixels that show it is at least this share of the largest number among

@@ -9,7 +9,7 @@ pub struct Luminaire {
     pub centre: DVec2,
     /// Lengths along and across the axis of largest variance, in texels, the long one first.
     pub size: DVec2,
-    /// Angle of that axis from x towards y, in radians, in (-π/2, π/2].
+    /// Angle of the axis of largest variance from x towards y, in radians, in (-π/2, π/2].
     pub orientation: f64,
     /// Area in texels. A texel at the lamp's edge counts only with the share that light covers.
     pub area: f64,

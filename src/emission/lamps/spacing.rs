@@ -41,7 +41,8 @@ fn frame(component: usize, exemplar: &Exemplar, designs: &Designs) -> Frame {
 }
 
 /// Returns the instances without those that are too close to an earlier instance that is kept. The minimum gap is
-/// [`MIN_GAP_SHARE`] times the smallest gap between two whole lamps of the exemplar.
+/// [`MIN_GAP_SHARE`] times the smallest gap between two whole lamps of the exemplar. If whole lamps touch, or if there
+/// are fewer than two, returns all instances.
 pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instance>) -> Vec<Instance> {
     let frames: Vec<Frame> = (0..exemplar.roles.len()).map(|k| frame(k, exemplar, designs)).collect();
     let whole: Vec<Frame> = (0..frames.len()).filter(|&k| exemplar.roles[k].is_whole()).map(|k| frames[k]).collect();

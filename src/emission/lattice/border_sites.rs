@@ -59,8 +59,8 @@ pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     Ok(())
 }
 
-/// Returns one lamp for each site: each position within the lattice cell at which lamps lie. `inverse` maps unwarped
-/// pixels to lattice coordinates.
+/// Returns one lamp for each site. A site is a position within the lattice cell at which lamps lie. `inverse` maps
+/// unwarped pixels to lattice coordinates.
 fn one_lamp_per_site(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
     let mut first: Vec<&Component> = Vec::new();
     for lamp in exemplar.lamps() {

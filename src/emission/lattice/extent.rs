@@ -10,9 +10,9 @@ use glam::DVec2;
 /// Minimum gap between the lamps of adjacent copies of the exemplar, in unwarped pixels. [convention]
 const CELL_GAP: f64 = 4.0;
 
-/// An exemplar with fewer lamps than this repeats as a whole, so that rows of unlike lamps stay rows. Patches keep the
-/// lit share of scattered lamps better, because they also continue the lamps that the border cuts; with as many lamps
-/// as this, enough of them are uncut for patches. [judged on 15 photos]
+/// An exemplar with fewer lamps than this repeats as a whole, so that rows of unlike lamps stay rows. With more lamps,
+/// patches are placed without a lattice. Patches also continue the lamps that the border cuts, so they keep the lit
+/// share better. They need enough lamps that the border does not cut. [judged on 15 photos]
 const FEW_LAMPS: usize = 16;
 
 /// All lamps form one isolated group if the free space around them is large compared with the distances between them.

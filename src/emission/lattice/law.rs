@@ -92,7 +92,7 @@ impl Law {
     }
 
     /// The lengths of the periods along x and along y in unwarped pixels; `None` for an axis to which no period is
-    /// parallel. For `Copy`, both are infinite.
+    /// nearly parallel (`MAX_SLANT`). For `Copy`, both are infinite.
     pub fn periods(&self) -> [Option<f64>; 2] {
         if *self == Self::Copy {
             return [Some(f64::INFINITY); 2];

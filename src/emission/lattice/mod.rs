@@ -29,9 +29,10 @@ use correlation::Autocorrelation;
 use glam::DVec2;
 use law::Law;
 
-/// Minimum correlation at a period, as a share of m. Here m is the maximum over all shifts of the correlation minus an
-/// allowance for chance ([`Repeat::lower_bound`](repeats::Repeat::lower_bound)). A shift with a lower correlation
-/// probably moves lamps onto lamps of another kind. [bench emission:patterns]
+/// Minimum correlation at a period, as a share of m. To obtain m, an allowance for chance is subtracted from the
+/// correlation at each shift ([`Repeat::lower_bound`](repeats::Repeat::lower_bound)); m is the largest of these
+/// differences. A shift with a lower correlation probably moves lamps onto lamps of another kind.
+/// [bench emission:patterns]
 const MIN_RELATIVE_CORRELATION: f32 = 0.9;
 /// The correlation at a shift counts only if at least this share of the valid pixels overlaps with valid pixels of the
 /// shifted image. [bench emission:patterns]

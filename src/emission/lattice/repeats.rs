@@ -18,7 +18,7 @@ const MIN_FALL: (isize, f32) = (8, 0.02);
 
 /// A shift that moves lights onto lights, found as a peak of the autocorrelation.
 pub struct Repeat {
-    /// In pixels of the correlated image; [`super::shifts`] converts it to unwarped pixels.
+    /// The shift, in pixels of the correlated image; [`super::shifts`] converts it to unwarped pixels.
     pub shift: DVec2,
     /// The correlation at this shift.
     pub value: f32,

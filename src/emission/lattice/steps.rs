@@ -51,8 +51,8 @@ pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     })
 }
 
-/// The steps parallel to the x or y axis between lamps of about equal size. Each has the number of pairs of lamps that
-/// show it.
+/// Finds the steps from one lamp to another of about equal size that are parallel to the x or to the y axis. Counts the
+/// pairs of lamps that show each step.
 fn steps(lamps: &[MeasuredLamp]) -> Vec<Step> {
     let mut steps: Vec<Step> = Vec::new();
     for (n, from) in lamps.iter().enumerate() {
