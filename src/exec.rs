@@ -170,7 +170,7 @@ impl Drop for Pool {
 }
 
 // The parallel loops call their closures through `dyn`, so that rayon's code is compiled once for each type of item.
-// When it was compiled once for each closure, it made up a sixth of the code that the compiler had to optimise.
+// With one copy for each closure, a sixth of the code that the compiler had to optimise was rayon's.
 
 /// Calls `work(row, pixels)` for every row of an interleaved image, in parallel. Checks for cancellation before each
 /// row.
@@ -421,7 +421,8 @@ mod tests {
         .unwrap();
         let none = run(&|| Err(Error::new(ErrorKind::OutOfMemory, "no memory"))).unwrap_err();
         assert_eq!(none.kind, ErrorKind::OutOfMemory);
-        // The rows of each scratch memory number its uses, so as many rows hold 1 as there are scratch memories.
+        // Each row holds how often its scratch memory has been used. A row of ones is the first use of a scratch
+        // memory, so there must be as many such rows as scratch memories.
         let (count, first) = (count.into_inner(), data.chunks(4).filter(|row| **row == [1; 4]).count());
         assert!(count == first && count < 500 && !data.contains(&0), "{count} {first}");
     }

@@ -23,7 +23,7 @@ pub enum Scale {
 }
 
 /// A lamp counts as rectangular if it covers more than this share of its bounding box. The limit lies halfway between
-/// a disc and a full box. [convention]
+/// the share of a disc, π/4, and the share of a rectangle, 1. [convention]
 const MIN_FILL: f64 = f64::midpoint(std::f64::consts::FRAC_PI_4, 1.0);
 
 /// Maximum ratio of the surface's length to the length of the plane in the photo, for example 600 m to 6 m. Beyond
@@ -56,8 +56,9 @@ pub struct TexelGrid {
 
 impl Sizing {
     /// Computes the size of an unwarped pixel on the surface, in metres. `pixel` is this size divided by the distance
-    /// of the photo's camera from the lit plane. `plane_distance` is the distance in metres. If `plane_distance` is 0,
-    /// the distance is estimated from the lamps.
+    /// of the photo's camera from the lit plane. `plane_distance` is this distance in metres, or 0. It counts for
+    /// [`Scale::Distance`] only: if it is 0, the distance is estimated from the lamps. The other scales compute the
+    /// distance from the length that they give.
     pub fn new(
         scale: Scale,
         (pixel, plane_distance): (f64, f64),
@@ -93,10 +94,10 @@ impl Sizing {
 
 impl TexelGrid {
     /// Chooses the size and the number of the texels on a surface of `size` metres. The longer side of the unwarped
-    /// photo has `pixels` pixels of `pixel` metres each. The size of a texel is
-    /// - `texel_size`, if it is not 0;
-    /// - else `pixel`, the size of an unwarped pixel;
-    /// - but longer side of the surface / `max_texels`, if `pixel` is smaller than that.
+    /// photo has `pixels` pixels of `pixel` metres each. Let min be the longer side of the surface divided by
+    /// `max_texels`. The size of a texel is
+    /// - `texel_size`, if it is not 0; if it is smaller than min, an error is returned;
+    /// - else the larger of `pixel` and min.
     pub fn new(size: DVec2, (pixels, pixel): (usize, f64), texel_size: f64, max_texels: usize) -> Result<Self> {
         let min = size.max_element() / max_texels as f64;
         if texel_size > 0.0 && texel_size < min * (1.0 - 1e-9) {

@@ -230,8 +230,8 @@ fn scattered_lamps_stay_whole_and_as_many() {
     let s = score(&result, per_area, (least, mean, most), None);
     // Patches repeat contiguous parts of the exemplar, so the texture's mean lamp area is no more precise than a mean
     // over the n lamps of the exemplar. Allow three standard errors of such a mean, 3 σ / √n, with the standard
-    // deviation σ of the lamp areas. Allow as much for the number of lamps per area, which is the lit share divided by
-    // the mean lamp area: the texture keeps the lit share more closely.
+    // deviation σ of the lamp areas. The number of lamps per area is the lit share divided by the mean lamp area. Allow
+    // the same error for it, because the error of the lit share is smaller.
     let deviation = (areas.iter().map(|a| (a / mean - 1.0).powi(2)).sum::<f64>() / areas.len() as f64).sqrt();
     let allowed = 3.0 * deviation / (areas.len() as f64).sqrt();
     assert!(s.cut == 0 && s.merged == 0, "{s:?}");
@@ -298,7 +298,8 @@ fn a_coarse_photo_does_not_give_its_steps_to_the_outlines() {
     for lamp in &result.luminaires {
         assert_eq!(lamp.outline.len(), 4, "{:?}", lamp.outline);
     }
-    // All lamps are drawn from their design, so the renderer needs no map of the lit blocks; without a photo it does.
+    // With a photo, all lamps are drawn from their design, so the renderer needs no map of the lit blocks. Without a
+    // photo, it needs the map.
     let has_map = |input: &Input| {
         let plan = Composition::new(input, &[], &params, Monitor::default().job()).unwrap();
         plan.layers[0].lit_blocks.is_some()
@@ -500,8 +501,8 @@ fn what_was_measured_is_not_read_again_and_gives_the_same_bits() {
     let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0)).with_corners_cut();
     let params = Params { width: 300, height: 280, ..Params::default() };
     let job = Monitor::default();
-    // Measure the exemplar with the settings of the texture and with other settings. The texture must be the same: if
-    // the other settings change the analysis, it must be repeated.
+    // Measure the exemplar with the settings of the texture, and with other settings. If the other settings would
+    // change the analysis, the exemplar must be analysed again. The texture must be the same in all cases.
     for read_with in [Params::default(), params.clone(), Params { working_side: 64, ..Params::default() }] {
         let measured = measure(&exemplar.input(), &read_with, job.job()).unwrap();
         let result = blend_measured(measured, &exemplar.input(), &[], &params, job.job()).unwrap();

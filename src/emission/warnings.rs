@@ -15,8 +15,8 @@ const UNLIT_ERROR: f64 = 1.0;
 /// If the exemplars show fewer whole lamps than this, a warning says that they are too few for measuring size and
 /// spacing. [convention]
 const MIN_LAMPS: usize = 2;
-/// Lamps that the exemplars must show whole before their repetition as a whole counts as a missing lattice. Fewer lamps
-/// need no lattice. [convention]
+/// A texture that repeats its exemplar as a whole counts as lacking a lattice only if the exemplars show at least this
+/// number of whole lamps. Fewer lamps need no lattice. [convention]
 const MIN_LATTICE_LAMPS: usize = 6;
 
 impl Emission {

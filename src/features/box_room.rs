@@ -81,11 +81,11 @@ pub fn faces(sides: &[f64; 4], ray: DVec3) -> [(Face, f64); 2] {
 /// then reaches beyond these points, and surrounds lamps that lie there. [convention]
 const MARGIN: f64 = 1.05;
 
-/// Pixels share a face of the room if at least this share of them lies on it. [convention]
+/// A face of the room is common to a set of pixels if at least this fraction of them lies on it. [convention]
 const SHARED: f64 = 0.9;
-/// Maximum factor by which a room may be enlarged to contain lamps beyond it. If a larger factor is necessary, the
-/// room stays as it is. `MAX_GROWTH_UNCERTAIN` applies if the room layout is uncertain, because strokes for the plane
-/// are missing, or because the photo's lines do not determine the camera. [bench photos:tune, photos:real]
+/// Maximum factor by which a room may be enlarged to contain lamps beyond it. If a larger factor is necessary, the room
+/// stays as it is. `MAX_GROWTH_UNCERTAIN` applies if the room layout is uncertain: if strokes for the plane are
+/// missing, or if the photo's lines do not determine the camera. [bench photos:tune, photos:real]
 const MAX_GROWTH: f64 = 1.25;
 const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 

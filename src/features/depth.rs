@@ -15,7 +15,8 @@ pub struct Surface {
     pub inverse_depth: Image,
     /// Unit normals in camera space, towards the camera.
     pub normals: Image,
-    /// Confidence in `[0, 1]`.
+    /// Confidence in the depth of each pixel, in `[0, 1]`. It is 0 where the depth was filled in from the surroundings
+    /// of a hole.
     pub confidence: Image,
 }
 
@@ -138,7 +139,8 @@ fn fill_holes(surface: &mut Surface, job: Job) -> Result<()> {
             out[4] = 1.0;
         }
     }
-    // Pull: each level sums four pixels of the next finer level. If their weight exceeds 1, divide all channels by it.
+    // Pull: each level sums four pixels of the next finer level. If the sum of their weights exceeds 1, divide all
+    // channels by this sum.
     let mut levels = vec![base];
     while let Some(fine) = levels.last().filter(|l| l.width > 1 || l.height > 1) {
         job.check()?;

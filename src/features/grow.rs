@@ -29,9 +29,9 @@ const MIN_PART: f64 = 0.2;
 /// Blur and widened edges stop strokes about this number of pixels before the edge of their surface. The grown parts
 /// are therefore widened by this number.
 const MARGIN: usize = 3;
-/// Costs are stored as integers from 0 to this number. The number stands for the gradient `MAX_GRADIENT / CLEARLY` and
-/// all steeper ones. Steeper gradients need no larger cost: a class owns a pixel only at a gradient below
-/// `MAX_GRADIENT`, and a cost of the other class above this number is clearly larger already.
+/// Costs are stored as integers from 0 to this maximum, which stands for the gradient `MAX_GRADIENT / CLEARLY` and all
+/// steeper ones. No larger cost is needed. A class owns a pixel only if its cost is below that of `MAX_GRADIENT`, which
+/// is `CLEARLY` times the maximum. So if the other class has the maximum, its cost is clearly larger already.
 const LEVELS: usize = u8::MAX as usize;
 
 /// The parts of a photo over which strokes have grown.

@@ -58,8 +58,9 @@ impl Layout {
         Ok(Surface { inverse_depth, normals, confidence })
     }
 
-    /// Computes the confidence of each pixel. It falls with the distance to the midpoint of the nearest segment on the
-    /// same face, among the segments whose direction the face can contain.
+    /// Computes the confidence of each pixel. The segments whose direction is possible on the face on which they lie
+    /// are evidence for this face. The confidence of a pixel falls with its distance to the midpoint of the nearest
+    /// such segment on the pixel's own face.
     fn confidence(&self, room: &RoomView, width: usize, height: usize, job: Job) -> Result<Image> {
         let to_room = facing_axes(room.perspective).transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);

@@ -14,7 +14,8 @@ use crate::image::Image;
 use crate::job::Job;
 use crate::simd::widest;
 
-/// Number of rows processed together: the window sums slide from one row to the next.
+/// Number of rows that one task fits. Within these rows, the window sums are updated from row to row; the next task
+/// starts new sums.
 const BAND: usize = 64;
 /// Factor on the cost of the centred window. A shifted window is preferred only if its cost is below this share of the
 /// cost of the centred window. [origin not recorded]

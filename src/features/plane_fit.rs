@@ -9,9 +9,9 @@ use crate::image::Image;
 use crate::simd::widest;
 use std::ops::Range;
 
-/// Points count as collinear if the ratio of the determinant to the product of the variances is below this. For
-/// non-collinear points with integer coordinates in the largest window, the ratio is at least 1e-9; rounding yields
-/// 1e-15. [rounding]
+/// Points count as collinear if the determinant of their covariance matrix, divided by the product of the two
+/// variances, is below this. For non-collinear points with integer coordinates in the largest window, this ratio is at
+/// least 1e-9; rounding yields 1e-15. [rounding]
 const SINGULAR: f64 = 1e-12;
 
 /// The regression planes around the pixels of a row: `w ≈ value + dx i + dy j`, where `i` and `j` are the offsets in
@@ -117,7 +117,7 @@ widest! {
 }
 
 widest! {
-    /// Updates the sums for the next row, from which each row offset `j` becomes `j - 1`.
+    /// Makes the sums relative to the next row: each row offset `j` becomes `j - 1`.
     fn move_down(columns: &mut Columns) {
         let width = columns.n.len();
         let (n, w) = (&columns.n[..width], &columns.w[..width]);

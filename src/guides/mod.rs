@@ -209,7 +209,7 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
 /// The value that the 90th percentile of luminance gets at the common exposure. [convention]
 const BRIGHT: f32 = 0.8;
 
-/// Returns the factor that converts luminance in cd/m² to values at the common exposure.
+/// Returns the factor that converts luminance in cd/m² to values at the common exposure; 1 if the pictures are black.
 pub fn exposure(source: &Image, target: &Image) -> Result<f32> {
     let pixels = source.data.chunks_exact(3).chain(target.data.chunks_exact(3));
     let mut luminances = try_collect(pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()))?;

@@ -47,7 +47,8 @@ pub fn riff_chunks(bytes: &[u8]) -> impl Iterator<Item = (&[u8; 4], &[u8])> {
     })
 }
 
-/// Returns left, top, width and height of the first frame of a GIF within its logical screen, in pixels.
+/// Returns left, top, width and height of the first frame of a GIF within its logical screen, in pixels. `None` if the
+/// file is cut off or damaged before the frame.
 pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
     // Skip the header, the logical screen descriptor and the global colour table.
@@ -71,7 +72,8 @@ pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     }
 }
 
-/// Iterates over the sub-blocks of the first application extension with this name in a GIF; `None` if there is none.
+/// Iterates over the sub-blocks of an application extension in a GIF: the first one with this name before the first
+/// frame. `None` if there is none.
 pub fn gif_extension<'a>(bytes: &'a [u8], name: &[u8; 11]) -> Option<impl Iterator<Item = &'a [u8]> + use<'a>> {
     let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
     let mut rest = bytes.strip_prefix(b"GIF8")?.get(9 + table(*bytes.get(10)?)..)?;

@@ -46,13 +46,14 @@ impl Balance {
         self.column = 0;
     }
 
-    /// Records that the current block has `excess` more lit pixels than its share.
+    /// Adds `excess` lit pixels to the excess of the current block. `excess` is the number of lit pixels that a patch
+    /// adds, minus the target number ([`Comparison::excess`](super::comparison::Comparison::excess)).
     pub fn add(&mut self, excess: f64) {
         self.row[self.column] += excess;
     }
 
-    /// The penalty if the current block gets `excess` more lit pixels than its share. It is comparable with a sum over
-    /// pixels of squared differences.
+    /// The penalty for a patch that adds `excess` lit pixels to the excess that the current block has so far. It has
+    /// the unit of a sum of squared differences over pixels.
     pub fn penalty(&self, excess: f64) -> f64 {
         self.weight * (self.row[self.column] + excess).powi(2) / self.lamp
     }

@@ -12,8 +12,8 @@ use crate::job::Job;
 use glam::Vec4;
 
 /// A patch counts as equally good as the best one if its error is at most a e + b, where e is the lowest error. The
-/// first value is a; Efros and Freeman (2001) also allow 10 %. The second value is the minimum of b, which is
-/// `Comparison::slack`. [paper: Efros and Freeman 2001]
+/// first value is a; Efros and Freeman (2001) also allow 10 %. The second value is the minimum of b; on a lattice, b
+/// may be larger (`Comparison::slack`). [paper: Efros and Freeman 2001]
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
 /// The lit share of a pixel, in `[0, 1]`, is multiplied by this and rounded, so that light can be summed in integers.
@@ -69,9 +69,9 @@ impl<'a> Comparison<'a> {
         let working = guide.working;
         let shown = working.shown_coverage.iter().zip(&working.shown).filter(|(_, shown)| **shown);
         let (lit, all) = shown.fold((0.0, 0usize), |(lit, all), (&light, _)| (lit + f64::from(light), all + 1));
-        // Lattice shifts are rounded to whole pixels. Even between perfect matches, the x and y distances in the
-        // metadata then differ by √(1/6) pixel each (root mean square). The error from both is
-        // 2 · (1/6) · weight / cap² = weight / (3 cap²).
+        // Lattice shifts are rounded to whole pixels, with an error that is uniform in ±1/2 and has the variance 1/12.
+        // Between two patches that match perfectly, the x and y distances in the metadata then differ by a mean square
+        // of 2/12 = 1/6 pixel² each. Tolerate this difference: 2 · (1/6) · weight / cap² = weight / (3 cap²).
         let slack = match is_lattice {
             true => (f64::from(guide.guide_weight) / (3.0 * guide.cap.powi(2))) as f32,
             false => 0.0,
@@ -233,7 +233,7 @@ impl<'a> Comparison<'a> {
     /// The target is the number of pixels that the shift fills, times a lit share:
     ///
     /// - On a lattice, every shift puts lamps at the same positions of the block, although some lamps may be missing.
-    ///   The lit share is the mean of all given shifts.
+    ///   The lit share is the mean lit share of the pixels that the given shifts fill.
     /// - Without a lattice, it is the lit share of the exemplar.
     pub fn excess(&self, block: &Block, shifts: impl Iterator<Item = Shift>) -> Vec<f64> {
         let light_of = |shift: Shift| {

@@ -114,9 +114,9 @@ pub fn place(
     Ok(quilt.patch_map)
 }
 
-/// Returns the sides of a block, and all positions in the exemplar at which the block contains usable pixels only, as
-/// the indices of its upper left pixel. If there is no such position, the sides shrink by a quarter, repeatedly, until
-/// there is one: a texture without a lattice is made of blocks from these positions.
+/// Returns the sides of a block, and all positions in the exemplar at which the block contains usable pixels only. A
+/// texture without a lattice is made of blocks from these positions. Each position is given by the index of the block's
+/// upper left pixel. If there is no such position, the sides shrink by a quarter, repeatedly, until there is one.
 fn admissible_corners(
     usable: &AreaSums,
     width: usize,
@@ -196,8 +196,9 @@ impl Quilt<'_> {
         block
     }
 
-    /// The distinct shifts at the upper left, upper right and lower left corner of a block: those of the corner pixels,
-    /// and of the pixels diagonally above and to the left of them.
+    /// The distinct shifts around three corners of a block: upper left, upper right and lower left. At each corner,
+    /// these are the shift of the block's corner pixel and that of the pixel one column to the left and one row above
+    /// it. Pixels without a patch give no shift.
     fn neighbours(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts: Vec<Shift> = Vec::new();
         let mut neighbour = |x: usize, y: usize| {
@@ -235,8 +236,8 @@ impl Quilt<'_> {
         shifts
     }
 
-    /// The shifts to lattice positions that move the exemplar's usable pixels into a block, at least in part. If there
-    /// are more than [`LATTICE_CANDIDATES`], a random subset of about this size.
+    /// The shifts that lead to a position of the lattice and move the bounding box of the exemplar's usable pixels so
+    /// that it overlaps a block. If there are more than [`LATTICE_CANDIDATES`], a random subset of about this size.
     fn lattice_shifts(&self, rect: &Rect, basis: [DVec2; 2]) -> Vec<Shift> {
         let pitch = self.comparison.guide.working.pitch;
         let point = |x: usize, y: usize| DVec2::new(x as f64, y as f64);
@@ -267,10 +268,10 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Chooses at random among the shifts that are equally good, which means that their error exceeds the lowest error
-    /// by no more than the tolerance ([`Comparison::equally_good`]). A row of lamps is the exception: its first block
-    /// takes the shift nearest to `offset`, and each later block keeps the shift of a neighbour if this is equally
-    /// good.
+    /// Chooses at random among the shifts that are equally good: those whose error exceeds the lowest error by no more
+    /// than the tolerance ([`Comparison::equally_good`]). The law [`Law::Row`] is the exception. Its first block takes
+    /// the shift nearest to `offset`. Each later block keeps the shift of a neighbouring patch if this shift is equally
+    /// good. `None` if there is no shift to choose from.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.law, Law::Row(_)) && self.patch_map.shifts.is_empty() {

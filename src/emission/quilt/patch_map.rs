@@ -75,8 +75,9 @@ impl PatchMap {
     }
 
     /// Repeats the patch map over `width` × `height` working pixels. `across` is the period in unwarped pixels, a
-    /// vector along x or y; the map repeats along this axis only. In the n-th repetition, n `across` is added to every
-    /// shift. Shifts that become equal get one label. A working pixel is `pitch` unwarped pixels wide and high.
+    /// vector along x or y; the map repeats along this axis only. Along the other axis, its last column or row is
+    /// continued. In the n-th repetition, n `across` is added to every shift. Shifts that become equal get one label. A
+    /// working pixel is `pitch` unwarped pixels wide and high.
     pub fn repeated(&self, (width, height): (usize, usize), across: DVec2, pitch: DVec2) -> Self {
         let mut out = Self::new(width, height);
         let mut shifts = Shifts::default();

@@ -12,10 +12,10 @@ use glam::{DMat2, DVec2};
 /// Adapts a patch map that was made for the exemplar's lattice, with the periods `own`, to the lattice with the periods
 /// `stretched`. In the texture, the origin of both lattices is at `offset`. Lengths are in unwarped pixels.
 ///
-/// Each cell of the stretched lattice shows the patch at its centre. If the exemplar has no usable pixel for a pixel of
-/// the cell, this pixel keeps its own patch. The sides of the texture, given by `size`, are lattice vectors of the
-/// stretched lattice, so opposite sides match without a seam. An axis along which the lights do not change is not
-/// divided into cells.
+/// All pixels of a cell of the stretched lattice get the patch at the centre of the cell. If this patch would show an
+/// unusable pixel of the exemplar, the texture's pixel keeps the patch that it has in `patch_map`. The sides of the
+/// texture, given by `size`, are lattice vectors of the stretched lattice, so opposite sides match without a seam. An
+/// axis along which the lights do not change is not divided into cells.
 pub fn stretch(
     exemplar: &Exemplar,
     patch_map: &PatchMap,
@@ -39,16 +39,16 @@ pub fn stretch(
     for y in 0..patch_map.height {
         for (x, label) in row.iter_mut().enumerate() {
             let place = (DVec2::new(x as f64, y as f64) + 0.5) * working.pitch;
-            // Find the centre of the cell that contains the pixel (`at`). If it lies outside the texture, `within` is
-            // the equivalent point inside, at a distance of whole sides of the texture.
+            // Find `at`, the centre of the cell that contains the pixel. `within` is `at` modulo the size of the
+            // texture, so it lies inside the texture.
             let cells = to_cells * (place - start);
             let at = start + stretched * (cells.round() * has_cells + cells * (DVec2::ONE - has_cells));
             let within = at.rem_euclid(size);
             let pixel = within / working.pitch;
             let (u, v) = ((pixel.x as usize).min(patch_map.width - 1), (pixel.y as usize).min(patch_map.height - 1));
-            // The patch shows the exemplar's cell at `at` that lies `steps` cells from the exemplar's central lamp
-            // (`first`). Each of these steps is longer by `stretched` - `own` on the stretched lattice, so add this
-            // difference to the patch's shift once for each step.
+            // Count the lattice steps from the exemplar's central lamp (`first`) to the exemplar's cell that the patch
+            // shows at `at`. Each step is longer by `stretched` - `own` on the stretched lattice. So add this
+            // difference, times `steps`, to the patch's shift.
             let moved = |patch: &Shift, at: DVec2| {
                 let steps = to_cells * (at - start) - to_cells * (patch.exact - offset);
                 patch.exact + (stretched - own) * (steps.round() * has_cells)

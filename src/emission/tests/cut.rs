@@ -15,7 +15,7 @@ fn continued(exemplar: &Design) -> Emission {
     run(&Input { photo, ..exemplar.input() }, &params, Monitor::default().job()).unwrap()
 }
 
-/// An exemplar whose photo does not show the right part: pixels right of the line x = 70 + 1.5 y are invalid.
+/// An exemplar whose photo does not show everything: pixels to the right of the line x = 70 + 1.5 y are invalid.
 fn slanted(lamp: impl Fn(f64, f64) -> bool) -> Design {
     let mut design = Design::new(160, 90, lamp);
     for (i, valid) in design.valid.data.iter_mut().enumerate() {

@@ -55,7 +55,7 @@ fn repetitions_of_the_exemplar_keep_its_rows_apart() {
     let params = Params { width: 720, height: 500, law: LawMode::Whole, ..Params::default() };
     let result = exemplar.run(&params).unwrap();
     let Law::Whole([_, down]) = result.law else { panic!("{:?}", result.law) };
-    // The rows end at 5 and 113; the smaller gap lies between 11 and 45.
+    // Along y, the rows occupy 5 to 11, 45 to 59 and 103 to 113. The smaller of the two gaps is the one from 11 to 45.
     assert!(down.y >= 113.0 - 5.0 + 45.0 - 11.0 - 2.0, "{down}");
     let phase = |y: f64| {
         let off = |row: &f64| ((y - row) / down.y - ((y - row) / down.y).round()).abs() * down.y;
@@ -115,8 +115,8 @@ fn lamps_without_a_place_are_left_out() {
     let lit = |e: &Emission| e.mask.data.iter().sum::<f32>() as f64;
     assert_eq!(lit(&touched), lit(&result) - 196.0);
     assert!((touched.luminaires.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6);
-    // Partly covered texels at the rim of the removed lamp must be removed as well. Such texels exist only if texels
-    // are larger than unwarped pixels.
+    // Texels that the removed lamp covers partly must be removed as well. Such texels exist only if texels are larger
+    // than unwarped pixels.
     let coarse = exemplar.run(&Params { width: 150, height: 150, scale: 2.7, ..Params::default() }).unwrap();
     let lamp_out = &coarse.luminaires[coarse.luminaires.len() / 2];
     let at = lamp_out.centre.y as usize * 150 + lamp_out.centre.x as usize;

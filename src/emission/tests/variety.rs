@@ -120,8 +120,8 @@ fn scattered_lamps_among_those_of_a_lattice_stay_whole_and_it_in_step() {
 #[test]
 fn lamps_that_are_missing_do_not_hide_the_period_of_the_others() {
     // A tenth of the lamps is missing. Shifts with a small overlap compare few lamps and may correlate well by chance,
-    // so the lattice search subtracts two standard errors from each correlation. About one wrong result in twenty draws
-    // of the missing lamps remains.
+    // so the lattice search subtracts two standard errors from each correlation. It still finds a wrong lattice for
+    // about one in twenty random choices of the missing lamps.
     let mut wrong = Vec::new();
     for draw in 0..24 {
         let exemplar = Design::new(480, 300, |x, y| {

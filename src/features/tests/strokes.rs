@@ -247,8 +247,8 @@ fn a_stroke_above_the_picture_rail_raises_the_ceiling() {
     println!("{without:?} {with:?}");
     assert!((without.sides[2] / -rail - 1.0).abs() < 0.03, "{without:?}");
     assert!((with.sides[2] / sides[2] - 1.0).abs() < 0.15, "{with:?}");
-    // Positive strokes mark one face of the room, but do not say which face; the search infers this. With positive and
-    // negative strokes swapped, they mark the back wall. The ceiling must be found at the same height.
+    // The strokes do not say which face of the room the positive ones mark; the search infers it. If positive and
+    // negative strokes are swapped, the positive ones mark the back wall. The ceiling must be found at the same height.
     let turned = strokes.map(|(pixels, positive)| (pixels, !positive));
     assert!((layout_of(&camera, &segments, &turned).sides[2] / sides[2] - 1.0).abs() < 0.15);
 }

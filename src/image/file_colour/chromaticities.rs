@@ -61,15 +61,16 @@ impl Chromaticities {
         self.to_rec709_from_white(self.white)
     }
 
-    /// Returns the matrix from linear colours in these primaries to linear Rec.709. It maps colours of the
-    /// chromaticity `white` to white, even if (1, 1, 1) has another chromaticity.
+    /// Returns the matrix from linear colours in these primaries to linear Rec.709. It maps colours of the chromaticity
+    /// `white` to white, even if (1, 1, 1) has another chromaticity. `None` if the primaries are collinear.
     pub fn to_rec709_from_white(self, white: [f64; 2]) -> Option<DMat3> {
         let target = Self::REC709;
         let matrix = target.to_xyz()?.inverse() * adaptation(xyz(white)?, xyz(target.white)?) * self.to_xyz()?;
         usable(matrix)
     }
 
-    /// Returns the matrix from linear colours to CIE XYZ. The Y of (1, 1, 1) is 1.
+    /// Returns the matrix from linear colours to CIE XYZ. The Y of (1, 1, 1) is 1. `None` if the primaries are
+    /// collinear.
     fn to_xyz(self) -> Option<DMat3> {
         let [r, g, b] = self.primaries.map(|[x, y]| DVec3::new(x, y, 1.0 - x - y));
         let primaries = DMat3::from_cols(r, g, b);

@@ -10,8 +10,8 @@ use std::sync::Arc;
 /// The conversion from the samples of a file (integers scaled to `[0, 1]`) to linear Rec.709.
 ///
 /// Colours outside Rec.709 have negative components, which become 0 because later stages treat negative values as
-/// damage. Only a file that itself stores negative values keeps some, so that later stages see the damage. Components
-/// above 1 are kept.
+/// damage. If the file itself stores a negative component, the converted components of this pixel are only raised to
+/// that value, so that later stages see the damage. Components above 1 are kept.
 #[derive(Clone)]
 pub struct Conversion(Kind);
 

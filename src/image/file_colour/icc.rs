@@ -135,7 +135,7 @@ fn curves_and_matrix(profile: &ColorProfile) -> Result<Space> {
     let columns = DMat3::from_cols_array_2d(&profile.rgb_to_xyz_matrix().v).transpose();
     let matrix = if profile.pcs == DataColorSpace::Xyz { of_colorants(columns) } else { None };
     let (Some(matrix), Some(red)) = (matrix, function(r)) else { return Ok(Space::Unusable) };
-    // In most profiles all three curves are equal.
+    // In most profiles all three curves are equal. Then sample only one of them.
     let is_equal = g == r && b == r;
     if is_equal && is_identity(matrix) && is_srgb(&red) {
         return Ok(Space::Native);
