@@ -72,7 +72,8 @@ struct Score {
     /// number of lamps that are larger than 130 % of its largest lamp.
     cut: usize,
     merged: usize,
-    /// Root mean square distance of the lamps from the best-fitting lattice, as a share of the period.
+    /// Root mean square distance of the lamps from the best-fitting lattice, in cell coordinates: a step of each period
+    /// has length 1.
     phase: f64,
 }
 

@@ -1,18 +1,18 @@
 //! Estimates depth from a single photo with a network that the caller supplies, in the form in which MiDaS and DPT are
-//! published as ONNX files (Ranftl et al. 2020, "Towards Robust Monocular Depth Estimation"; 2021, "Vision
-//! Transformers for Dense Prediction").
+//! published as ONNX files (Ranftl et al. 2020, "Towards Robust Monocular Depth Estimation"; 2021, "Vision Transformers
+//! for Dense Prediction").
 //!
 //! Input of the network, as in the published scripts: sRGB values in `[0, 1]`, resized to the network's input by cubic
-//! convolution (slope -0.75, no low-pass filter), minus a mean, divided by a standard deviation. If the file leaves
-//! the input size open, the aspect ratio is kept: the longer side becomes 384 pixels, the shorter side a multiple of
-//! 32.
+//! convolution (slope -0.75, no low-pass filter), minus a mean, divided by a standard deviation. If the file leaves the
+//! input size open, the aspect ratio is kept: the longer side becomes 384 pixels, the shorter side a multiple of 32.
 //!
-//! Output of the network: the map is resized to the photo by cubic convolution. Its values v are normalised to
-//! `m = (v - min v) / (max v - min v)` and taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest
-//! pixel then lies on the near plane of [`Params`] and the farthest on the far plane; `1 - m` is the screen depth of
-//! Eq. 1 (see `frustum`).
+//! Output of the network: the map is resized to the photo by cubic convolution. Its values v are normalised to `m = (v
+//! - min v) / (max v - min v)` and taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest pixel then
+//! lies on the near plane of [`Params`] and the farthest on the far plane; `1 - m` is the screen depth of Eq. 1 (see
+//! `frustum`).
 //!
-//! Not modelled: the unknown offset of the network's inverse depth, which the far plane replaces; metric networks.
+//! Not modelled: the unknown offset of the network's inverse depth (the farthest pixel is put on the far plane
+//! instead); networks that estimate depth in metres.
 
 use super::clean;
 use super::{DepthKind, DepthMap, DepthSource, Features, Input, Params};

@@ -151,8 +151,8 @@ impl Running {
 }
 
 widest! {
-    /// Least-squares regression of `w` on `(1, i, j)` about the means, for the windows of a row. A window whose points
-    /// are collinear gets no plane.
+    /// Least-squares regression of `w` on `(1, i, j)`, from sums relative to the means, for the windows of a row. A
+    /// window whose points are collinear gets no plane.
     fn regress(running: &Running, out: &mut [f32]) {
         let width = out.len() / 4;
         let [n, i, ii, j, jj, ij, w, iw, jw, ww] = running.sums.each_ref().map(|sums| {

@@ -25,7 +25,7 @@ fn photo(width: usize, height: usize) -> Image {
     Image::from_fn(width, height, |x, y| [x as f32 / width as f32, 0.5, y as f32 / height as f32]).unwrap()
 }
 
-/// Returns the depth along z, and the index of the face, at a pixel of the box with the given sides.
+/// Returns the depth along z at a pixel that shows a box with the given sides, and the index of the face that it shows.
 fn truth(camera: &Perspective, sides: &[f64; 4], x: usize, y: usize) -> (f64, usize) {
     let ray = camera.axes.transpose() * camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
     let (face, inverse) = faces(sides, ray)[0];

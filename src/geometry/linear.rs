@@ -42,8 +42,8 @@ pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f
     x.iter().all(|v| v.is_finite()).then_some(x)
 }
 
-/// Returns the eigenvalues of a symmetric matrix in ascending order, and its unit eigenvectors (cyclic Jacobi
-/// rotations).
+/// Returns the eigenvalues of a symmetric matrix in ascending order, and a list of its unit eigenvectors in the same
+/// order (cyclic Jacobi rotations).
 pub fn symmetric_eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64; N]; N]) {
     let mut v: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| f64::from(i == j)));
     for _ in 0..64 {

@@ -1,5 +1,5 @@
 //! Computes the position of each pixel of a frame in the previous frame. Camera and objects may have moved, and meshes
-//! may have changed their shape, as skins do.
+//! may have changed their shape, as the skin of an animated figure does.
 //!
 //! The surface point that a pixel shows is a triangle and a position on it. The vertices of the triangle in the
 //! previous frame give the previous position of the point, exactly. The point was visible if the previous frame shows

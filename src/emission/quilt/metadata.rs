@@ -6,7 +6,7 @@
 //! row and column, or to the nearest lamp in the plane. Here, they are the components of the offset from the pixel to
 //! the *nearest lit pixel* in the plane. The reasons:
 //!
-//! - Both distances always belong to one lamp.
+//! - The x and the y distance of a pixel always belong to the same lamp.
 //! - They vary continuously, except at the bisectors between lamps.
 //! - They also exist in rows and columns without light.
 
@@ -48,7 +48,7 @@ pub fn compute(
 /// Finds the index of the lit pixel nearest to each pixel, exactly and in linear time: two sweeps along columns, then
 /// the lower envelope of parabolas along rows (Felzenszwalb and Huttenlocher 2012).
 fn nearest_feature(is_lit: impl Fn(usize) -> bool, width: usize, height: usize, job: Job) -> Result<Vec<u32>> {
-    // Find the nearest lit row within each column.
+    // For each pixel, find the row of the nearest lit pixel in its column.
     let mut row_of = try_vec(width * height, NONE)?;
     for y in 0..height {
         for x in 0..width {

@@ -12,10 +12,10 @@ use glam::{DMat2, DVec2};
 /// Adapts a patch map that was made for the exemplar's lattice, with the periods `own`, to the lattice with the periods
 /// `stretched`. In the texture, the origin of both lattices is at `offset`. Lengths are in unwarped pixels.
 ///
-/// All pixels of a cell of the stretched lattice get the patch at the centre of the cell. If this patch would show an
-/// unusable pixel of the exemplar, the texture's pixel keeps the patch that it has in `patch_map`. The sides of the
-/// texture, given by `size`, are lattice vectors of the stretched lattice, so opposite sides match without a seam. An
-/// axis along which the lights do not change is not divided into cells.
+/// All pixels of a cell of the stretched lattice get the patch at the centre of the cell. Where this patch would show
+/// an unusable pixel of the exemplar, the pixel of the texture keeps the patch that it has in `patch_map`. The sides of
+/// the texture, given by `size`, are lattice vectors of the stretched lattice, so opposite sides match without a seam.
+/// An axis along which the lights do not change is not divided into cells.
 pub fn stretch(
     exemplar: &Exemplar,
     patch_map: &PatchMap,
@@ -46,9 +46,9 @@ pub fn stretch(
             let within = at.rem_euclid(size);
             let pixel = within / working.pitch;
             let (u, v) = ((pixel.x as usize).min(patch_map.width - 1), (pixel.y as usize).min(patch_map.height - 1));
-            // Count the lattice steps from the exemplar's central lamp (`first`) to the exemplar's cell that the patch
-            // shows at `at`. Each step is longer by `stretched` - `own` on the stretched lattice. So add this
-            // difference, times `steps`, to the patch's shift.
+            // Let `steps` be the lattice steps from the exemplar's central lamp (`first`) to the cell of the exemplar
+            // that the patch shows at `at`. Each step is longer by `stretched` - `own` on the stretched lattice. So add
+            // `steps` times this difference to the patch's shift.
             let moved = |patch: &Shift, at: DVec2| {
                 let steps = to_cells * (at - start) - to_cells * (patch.exact - offset);
                 patch.exact + (stretched - own) * (steps.round() * has_cells)

@@ -76,8 +76,8 @@ fn weights_differ_from_place_to_place() {
     let ramp = Image::from_fn(2, 1, |x, _| [x as f32]).unwrap();
     let params = Params { width: 1600, height: 600, working_side: 128, ..Params::default() };
     let result = blended(&first, &second, &ramp, &params);
-    // The weight rises linearly from 0 at 1/4 of the width to 1 at 3/4: these are the centres of the map's two pixels.
-    // Compare the mean weight in each quarter of the texture.
+    // The weight is 0 up to 1/4 of the width, the centre of the map's first pixel, and rises linearly to 1 at 3/4, the
+    // centre of its second pixel. In each quarter of the texture, the share of round lamps must be the mean weight.
     for (strip, expected) in [(0, 0.0f64), (1, 0.25), (2, 0.75), (3, 1.0)] {
         let range = f64::from(strip) * 400.0..f64::from(strip + 1) * 400.0;
         let lamps: Vec<&Luminaire> =

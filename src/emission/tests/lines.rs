@@ -1,5 +1,5 @@
-//! Tests of lights that run through the whole exemplar, such as long lines. Where a tileable texture repeats, they must
-//! join. A lamp list must contain them.
+//! Tests of lights that run through the whole exemplar, such as long lines. Where a tileable texture repeats, the lines
+//! must join. A lamp list must contain them.
 
 use super::*;
 

@@ -74,7 +74,8 @@ fn off(lamp: &Luminaire, truth: &[DVec2], corners: &[DVec2]) -> [f64; 3] {
 
 #[test]
 fn outlines_lie_within_a_quarter_of_a_texel() {
-    // If texels are smaller than unwarped pixels (`scale` < 1), the limit is a quarter of a pixel.
+    // The outlines may differ by a quarter of a texel. If texels are smaller than unwarped pixels (`scale` < 1), they
+    // may differ by a quarter of an unwarped pixel instead.
     for scale in [0.5, 1.0, 1.25, 1.5, 2.0, 3.0, 4.0] {
         let side = (112.0 * scale) as usize;
         let mut worst = [0.0f64; 3];

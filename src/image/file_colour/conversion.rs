@@ -93,8 +93,8 @@ fn each_colour(image: &mut Image, convert: impl Fn(Vec3) -> Vec3) {
     }
 }
 
-/// Clamps each component of a converted colour from below: to 0, or, if the file's colour `from` has a negative
-/// component, to its lowest component. NaN stays NaN.
+/// Raises the components of a converted colour that are below a limit to this limit. The limit is 0, or the lowest
+/// component of the file's colour `from` if that is negative. NaN stays NaN.
 fn within(colour: Vec3, from: Vec3) -> Vec3 {
     let lowest = Vec3::splat(from.min_element().min(0.0));
     Vec3::select(colour.cmplt(lowest), lowest, colour)
