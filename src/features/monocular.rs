@@ -6,10 +6,10 @@
 //! convolution (slope -0.75, no low-pass filter), minus a mean, divided by a standard deviation. If the file leaves the
 //! input size open, the aspect ratio is kept: the longer side becomes 384 pixels, the shorter side a multiple of 32.
 //!
-//! Output of the network: the map is resized to the photo by cubic convolution. Its values v are normalised to `m = (v
-//! - min v) / (max v - min v)` and taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest pixel then
-//! lies on the near plane of [`Params`] and the farthest on the far plane; `1 - m` is the screen depth of Eq. 1 (see
-//! `frustum`).
+//! Output of the network: the map is resized to the photo by cubic convolution. Its values v are normalised to
+//! `m = (v - min v) / (max v - min v)` and taken as inverse depth, `1/z = 1/far + m (1/near - 1/far)`. The nearest
+//! pixel then lies on the near plane of [`Params`] and the farthest on the far plane; `1 - m` is the screen depth of
+//! Eq. 1 (see `frustum`).
 //!
 //! Not modelled: the unknown offset of the network's inverse depth (the farthest pixel is put on the far plane
 //! instead); networks that estimate depth in metres.
