@@ -61,7 +61,7 @@ struct Cluster {
 struct NewPairs<'a> {
     pairs: &'a mut [Pair],
     parents: &'a mut [u32],
-    /// Index in the whole tree of the first pair of this part.
+    /// Index of the first of these pairs in [`Tree::pairs`].
     first: u32,
 }
 
@@ -178,8 +178,8 @@ struct Boxes([[f32; BOX_CAPACITY]; 6]);
 /// at most about 2^24 from the origin. [convention]
 const SENTINEL: f32 = 1e15;
 
-/// The entry `[i / LANES][k][i % LANES]` is `i XOR j` within [`PARTNER_BITS`], where `j = i - SEARCH_RADIUS + k` is the
-/// index of a neighbour of cluster `i`.
+/// The entry `[i / LANES][k][i % LANES]` holds the low bits ([`PARTNER_BITS`]) of `i XOR j`. Here
+/// `j = i - SEARCH_RADIUS + k` is the index of a neighbour of cluster `i`.
 static INDEX_DIFFERENCE: [[[u32; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES] = {
     let mut table = [[[0; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES];
     let mut i = 0;
@@ -275,7 +275,8 @@ mod tests {
 
     #[test]
     fn equal_merges_make_a_balanced_tree() {
-        // Leave out every other square of a grid, so that no two triangles share a leaf.
+        // One triangle in every second square of a grid along x and along y. The gaps between the boxes of the
+        // triangles keep any two of them from sharing a leaf.
         let square = |i: u32, j: u32| {
             let corner = |x, y| Vec3::new((2 * i) as f32 + x, (2 * j) as f32 + y, 0.0);
             [corner(0.0, 0.0), corner(1.0, 0.0), corner(0.0, 1.0)]

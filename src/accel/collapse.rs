@@ -68,8 +68,8 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
 }
 
 impl Source<'_> {
-    /// Divides the tree into parts, for parallel work, by splitting the node of the largest box again and again.
-    /// Returns the roots of the parts; empty for a small tree.
+    /// Divides the tree into parts, for parallel work, by repeatedly splitting the node with the largest box. Returns
+    /// the roots of the parts; empty for a small tree.
     fn cut(&self) -> Vec<u32> {
         let parts = (self.tree.pairs.len() / PART_LEAVES).min(PARTS);
         if parts < MIN_PARTS {
@@ -130,7 +130,8 @@ struct Open {
     stack_depth: usize,
 }
 
-/// A child that another task will write, and its position in its parent.
+/// A child that another task will write. The reference to it belongs in lane `lane` of the parent, whose index in
+/// [`Wide::lines`] is `node`.
 struct DeferredChild {
     at: Place,
     node: usize,
@@ -139,7 +140,7 @@ struct DeferredChild {
     stack_depth: usize,
 }
 
-/// Follows the choices of minimum cost down the tree and writes wide nodes.
+/// Writes wide nodes from the root down, and represents each branch by the wide subtrees of minimum cost.
 struct Choice<'a> {
     source: &'a Source<'a>,
     parts: &'a [CostedPart],
@@ -179,7 +180,7 @@ impl Choice<'_> {
         Ok(wide)
     }
 
-    /// Creates a node and the packets below it, and appends the child nodes still to be written to `open`.
+    /// Creates a node and the packets below it. Appends to `open` the child nodes that are still to be written.
     fn make_node(&self, this: Open, root: Place, leave: bool, wide: &mut Wide, open: &mut Vec<Open>) -> Result<()> {
         let node = wide.lines.push(&Node::empty())?;
         wide.nodes.push(node);
@@ -192,7 +193,8 @@ impl Choice<'_> {
         let mut ranked = members.map(|at| (0.0, at));
         ranked[..len].iter_mut().for_each(|(benefit, at)| *benefit = self.benefit(*at));
         ranked[..len].sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Determine and prefetch the triangles of all packets before any of them is used.
+        // Find and prefetch the triangles of all packets before any packet is written, so that the memory accesses
+        // overlap.
         let packets = ranked.map(|(_, at)| self.is_packet(at).then(|| self.triangles(at)));
         wide.stack_need = wide.stack_need.max(this.stack_depth + len);
         let stack_depth = this.stack_depth + len - 1;

@@ -113,15 +113,17 @@ impl Node {
     }
 }
 
-/// Relative margin of the box test: sixteen rounding errors of 2^-24 each. [rounding]
+/// Margin of the box test, relative to the coordinates of the ray's origin and of the scene: sixteen rounding errors of
+/// 2^-24 each. [rounding]
 const MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
-/// A ray prepared for box tests. Its distance to an axis-aligned plane is `plane * scale + shift`.
+/// A ray prepared for box tests. It meets the axis-aligned plane with the coordinate p at the distance
+/// `p * scale + shift`.
 ///
 /// The triangle test works on rounded coordinates and may report a hit a few units in the last place outside the
-/// triangle's box. As section 3.3 of Woop et al. requires, the shifts therefore move each box's near planes towards
-/// the ray and its far planes away from the ray. The margin is relative to the largest coordinate, so it follows the
-/// scale of the scene.
+/// triangle's box. As section 3.3 of Woop et al. requires, the shifts therefore move each box's near planes towards the
+/// ray and its far planes away from the ray. The margin is relative to the largest coordinate, so it follows the scale
+/// of the scene.
 pub(super) struct NodeRay<L> {
     /// Per axis, the byte offset in [`Node::bounds`] of the row with the planes through which the ray enters.
     near_start: [usize; 3],

@@ -72,7 +72,7 @@ impl Packet {
         let reciprocal = L::splat(1.0).div(edge[0].add(edge[1]).add(edge[2]));
         let (b0, u, v) = (edge[0].mul(reciprocal), edge[1].mul(reciprocal), edge[2].mul(reciprocal));
         let t = b0.mul(corner[0]).add(u.mul(corner[1])).add(v.mul(corner[2]));
-        // Reject a hit nearer than its own rounding error: it lies on the surface where the ray starts.
+        // Reject a hit nearer than its own rounding error: it may lie on the surface where the ray starts.
         let farthest = corner[0].abs().max(corner[1].abs()).max(corner[2].abs());
         let far_enough = farthest.mul(L::splat(MIN_DISTANCE)).lt(t);
         let hit = L::and(L::and(hit, far_enough), t.le(L::splat(t_max)));

@@ -84,7 +84,8 @@ impl<'a> Reinsertion<'a> {
         })
     }
 
-    /// Finds the best move of each node whose half area is at least `min_area`, and makes the moves.
+    /// Finds the best move of each node whose half area is at least `min_area`. Makes the moves, largest gain first,
+    /// and skips a move if an earlier one has changed one of its nodes.
     pub fn round(&mut self, min_area: f32, job: Job) -> Result<()> {
         let search = |(i, pairs): (usize, &[Pair])| {
             job.check()?;

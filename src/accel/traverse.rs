@@ -25,7 +25,8 @@ pub struct Accel {
     pub(super) level: Level,
 }
 
-/// Capacity of a traversal stack on the thread's own stack; deeper trees allocate theirs on the heap.
+/// Capacity, in entries, of a traversal stack on the thread's own stack. Traversal of a deeper tree allocates its stack
+/// on the heap.
 pub(super) const SHORT_STACK: usize = 128;
 
 impl Accel {

@@ -223,7 +223,7 @@ fn lockers(b: &mut Builder) {
     b.add("Boxes", card, boxes);
 }
 
-/// Furnishes the end wall: a door, a sign above it and a board. Returns the dark material of the trim.
+/// Furnishes the end wall: a door, a sign above it and a board. Returns the index of the trim's dark material.
 fn end_wall(b: &mut Builder) -> usize {
     let orange = b.paint("Door orange", Vec3::new(0.62, 0.25, 0.06), 0.5);
     let white = b.paint("Board white", Vec3::splat(0.80), 0.2);
@@ -241,7 +241,7 @@ fn end_wall(b: &mut Builder) -> usize {
     dark
 }
 
-/// Adds desks in two rows, back to back, with dividers between them. `dark` is the material of their screens.
+/// Adds desks in two rows, back to back, with dividers between them. `dark` is the index of the screens' material.
 fn desks(b: &mut Builder, dark: usize) -> Result<()> {
     let top = b.pattern("Beech", pattern::wood(Vec3::new(0.55, 0.38, 0.22))?, Vec2::new(1.2, 0.6), 0.5);
     let cloth = b.pattern(

@@ -9,8 +9,8 @@ const RANGE: [f64; 2] = [0.3, 20.0];
 const STEPS: usize = 400;
 
 /// Prior of the distance, a mixture of log-normal distributions: weight, median in metres, and standard deviation of
-/// the logarithm. The first is for ceilings of 2.4 to 3.5 m above a camera at 1.2 to 1.7 m, the second for halls.
-/// [convention]
+/// the logarithm. The first is for rooms: the ceiling is 2.4 to 3.5 m, the camera 1.2 to 1.7 m above the floor. The
+/// second is for halls. [convention]
 const PRIOR: [[f64; 3]; 2] = [[0.8, 1.4, 0.35], [0.2, 4.0, 0.6]];
 
 /// Usual sizes of lamps: longer and shorter side in metres, and the probability of this size. The lamps are panels and

@@ -22,8 +22,8 @@ pub struct Measurements {
     /// The shorter period of the lamps' lattice. Without a lattice, the median distance from a whole lamp to the
     /// nearest other whole lamp; 0 if there are fewer than two.
     pub spacing: f64,
-    /// Number of columns of the unwarped image that contain at least one usable pixel: on the plane, and not magnified
-    /// too much.
+    /// Number of columns of the unwarped image that contain at least one usable pixel. A usable pixel is on the plane,
+    /// and not magnified beyond [`Params::max_magnification`].
     pub width: f64,
     pub(super) analysis: Analysis,
 }

@@ -14,7 +14,7 @@ struct Brush {
     /// Half the width of the brush, and the length of its strokes, in units.
     radius: f32,
     length: f32,
-    /// The brush is used where the local detail of the picture is at least this value.
+    /// The brush is used where the local detail of the picture ([`detail`]) is at least this value.
     detail: f32,
 }
 
@@ -80,8 +80,8 @@ fn layer(canvas: &mut Canvas, subject: &Subject, brush: &Brush, seed: u64) {
     }
 }
 
-/// Returns the local detail: the largest colour difference from the four places two brush radii away along x and y, or
-/// the edge strength if that is larger.
+/// Returns the local detail. Four places lie two brush radii away along x and y; the detail is the largest difference
+/// of their colours from the colour at `at`, or the edge strength if that is larger.
 fn detail(subject: &Subject, at: Vec2, radius: f32) -> f32 {
     let around = [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y].map(|d| mixed(subject.at(at + d * 2.0 * radius)));
     let here = mixed(subject.at(at));

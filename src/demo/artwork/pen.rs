@@ -24,7 +24,8 @@ struct Set {
     ink: Vec3,
 }
 
-/// Returns the drawing weight for places darker than `tone`: 0 at `tone`, 1 where the tone is lower by 0.25.
+/// Returns the drawing weight of places darker than `tone`: 0 at this tone, 1 where the tone is lower by 0.25. The
+/// weight of a highlight is 0.
 fn below(appearance: &Appearance, tone: f32) -> f32 {
     // Leave highlights blank, however dark they are.
     if appearance.shine > 0.6 { 0.0 } else { (tone - appearance.tone) * 4.0 }

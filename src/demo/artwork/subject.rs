@@ -47,8 +47,8 @@ impl Subject {
         };
         // Take the material in the top-left corner as the background.
         let background = guides.materials.pixel(0, 0);
-        // Scale the object's tones so that its brightest direct light (98 % quantile) becomes 0.7. An object of dark
-        // paint is then drawn no darker than an object of light paint.
+        // Scale the object's tones so that the 98 % quantile of its direct luminance, after exposure, becomes 0.7. An
+        // object of dark paint is then drawn no darker than an object of light paint.
         let objects =
             direct.data.chunks_exact(3).zip(guides.materials.data.chunks_exact(3)).filter(|(_, m)| *m != background);
         let mut brightest = try_collect(objects.map(|(light, _)| luminance(Vec3::from_slice(light))))?;

@@ -11,7 +11,7 @@ const MAX_DISTANCE: f64 = 2.5;
 /// neighbours. Stoyan and Stoyan recommend 0.15 / √λ for a density of λ points per area; on a square lattice, 1 / √λ is
 /// the distance between neighbours. [paper: Stoyan and Stoyan 1994, eq. 15.16]
 const KERNEL_HALF_WIDTH: f64 = 0.15;
-/// Number of steps into which the distances from 0 to the longest one are divided.
+/// Number of steps into which the distances from 0 to [`MAX_DISTANCE`] are divided.
 const STEPS: usize = 100;
 
 /// Points in a rectangular window from the origin to `size`. All lengths may be in any unit, but two patterns that are

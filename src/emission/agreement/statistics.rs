@@ -120,9 +120,9 @@ impl Statistics {
         Self { lit: (self.lit * ratio).min(1.0), area: self.area * ratio, ..self }
     }
 
-    /// The largest relative difference between two patterns in lit share, lamp area and lamp spacing. A quantity that
-    /// is 0 in either pattern is skipped. Luminance is not compared: a texture holds relative values, and its absolute
-    /// luminance is solved for later.
+    /// The largest difference between two patterns in lit share, lamp area and lamp spacing, relative to `other`. A
+    /// quantity that is 0 in either pattern is skipped. Luminance is not compared: a texture holds relative values, and
+    /// its absolute luminance is solved for later.
     pub fn difference(&self, other: &Self) -> f64 {
         let pairs = [(self.lit, other.lit), (self.area, other.area), (self.spacing, other.spacing)];
         pairs.iter().filter(|(a, b)| *a > 0.0 && *b > 0.0).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max)

@@ -51,7 +51,7 @@ pub struct Choice {
     /// How well the law predicts the lamps of the photo, in `[0, 1]`. NaN if the law comes from the autocorrelation
     /// alone (for example because the photo shows too few whole lamps), and for [`Law::Copy`].
     pub score: f64,
-    /// The best alternative law, and its score; the score is 0 if there is no alternative.
+    /// The best alternative law, and its score. Without an alternative, the chosen law itself, with score 0.
     pub runner_up: Law,
     pub runner_up_score: f64,
 }
@@ -96,9 +96,9 @@ impl Proposal {
         Self { law, regularity: 0.0, score: SCORE_WITHOUT_PERIOD }
     }
 
-    /// Makes the periods of a lattice that are nearly parallel to the axes of the unwarped image exactly parallel.
-    /// Returns the proposal unchanged if this would lower the score by [`CLEAR_MARGIN`] or more, and for the panes of a
-    /// luminous ceiling.
+    /// Makes each period of a lattice that is nearly parallel to an axis of the unwarped image exactly parallel to this
+    /// axis. Returns the proposal unchanged if this would lower the score by [`CLEAR_MARGIN`] or more, and for the
+    /// panes of a luminous ceiling.
     fn aligned(self, exemplar: &Exemplar, score: impl Fn(Law) -> f64) -> Self {
         let law = self.law.aligned();
         if law == self.law || exemplar.is_luminous_ceiling() {

@@ -36,7 +36,7 @@ pub struct Composition {
 }
 
 impl Composition {
-    /// Plans the texture that [`crate::emission::blend`] makes. Its errors are the errors of `blend`.
+    /// Plans the texture that [`crate::emission::blend`] makes. Errors: as for `blend`.
     pub fn new(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Self> {
         Self::of(None, input, styles, params, job)
     }

@@ -54,7 +54,7 @@ impl Lamp {
 }
 
 /// Keeps a random selection of the lamps of each layer, with probabilities equal to the layer's weights, and removes
-/// the other lamps.
+/// the other lamps. A single layer keeps all its lamps.
 pub fn draw(layers: &mut [Layer], weights: &Weights, params: &Params) {
     if layers.len() < 2 {
         return;

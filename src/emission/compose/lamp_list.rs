@@ -78,7 +78,7 @@ impl LampList {
         Ok(list)
     }
 
-    /// Groups lamps of equal shape into kinds, and stores the number of its kind in each lamp. A kind may hold lamps of
+    /// Groups lamps of equal shape into kinds, and stores in each lamp the number of its kind. A kind may hold lamps of
     /// several exemplars, and lights that are copied patch by patch.
     fn number_kinds(&mut self, composition: &Composition) {
         let mut counts: Vec<Vec<usize>> = self.shapes.iter().map(|shapes| vec![0; shapes.len()]).collect();
@@ -105,7 +105,8 @@ impl LampList {
         self.shown.len() + self.others.len()
     }
 
-    /// Returns the light with the given index. If the border cuts it, returns the part within the texture.
+    /// Returns the light with the given index; `None` if there is no such light. If the border of the texture cuts the
+    /// light, returns the part within the texture.
     pub fn get(&self, composition: &Composition, index: usize) -> Option<Luminaire> {
         let mut lamp = match self.shown.get(index) {
             Some(&(k, instance)) => self.placed(composition, k as usize, instance),

@@ -36,8 +36,8 @@ const MIN_BLOCK: f64 = 16.0;
 /// Side of a patch on a lattice, as a multiple of the lattice's longer period. [bench emission:knobs]
 const BLOCK_PERIODS: f64 = 1.5;
 
-/// The plan of one exemplar's share of the texture: which part of the exemplar each place of the texture shows, and
-/// how its lamps are drawn.
+/// How one exemplar fills the texture: which part of the exemplar each place of the texture shows, and how its lamps
+/// are drawn.
 pub struct Layer {
     pub exemplar: Exemplar,
     pub law: Law,

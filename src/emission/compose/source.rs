@@ -169,8 +169,8 @@ impl TexelSource<'_> {
         way.into_iter().find(is_lamp).unwrap_or(centre)
     }
 
-    /// The mean colour of the light over a square with the centre `p`, from the photo. Outside the photo, the colour at
-    /// `p` by interpolation of the unwarped image. `lamp` is the label of the component at `p`.
+    /// The mean colour of the light over a square with the centre `p`, from the photo. Where the photo does not show
+    /// the square, the unwarped image is interpolated at `p` instead. `lamp` is the label of the component at `p`.
     fn colour(
         &self,
         p: DVec2,

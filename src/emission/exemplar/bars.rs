@@ -1,8 +1,8 @@
 //! Detects the bars between the panes of a luminous ceiling.
 //!
 //! The bars of a skylight or of a luminous ceiling run straight along the axes of the unwarped image. Far from the
-//! camera they are thinner than a photo pixel, or hidden by the bloom of the panes. Yet on average a bar is darker
-//! than the panes on both sides over all of its length. The median over a whole line therefore detects bars that
+//! camera they are thinner than a photo pixel, or hidden by the bloom of the panes. Yet, averaged over its whole
+//! length, a bar is darker than the panes on both sides. The median over a whole line therefore detects bars that
 //! single pixels do not show. Bars beyond the last visible one are predicted from the period of the bars.
 
 use super::foreshortening::LocalMap;
@@ -54,8 +54,9 @@ impl LitPlane<'_> {
 
 /// A bar along the columns or the rows of the image: the range of columns or rows that it covers, and its depth.
 ///
-/// The depth of a single column (or row) is the median, along it, of the share of the panes' luminance that its pixels
-/// lack. The depth of a bar is the depth of its deepest column, minus the median depth of all columns.
+/// The depth of a pixel is the share of the panes' luminance that it lacks ([`Lines`]). The depth of a column (or row)
+/// is the median over its pixels. The depth of a bar is the depth of its deepest column, minus the median depth of all
+/// columns.
 #[derive(Clone, Copy, Debug)]
 pub struct Bar {
     pub first: usize,
@@ -152,7 +153,8 @@ impl<'a> Lines<'a> {
         let mut excess: Vec<f32> = profile.iter().map(|p| p.map_or(0.0, |p| p - level)).collect();
 
         // Find the bars, the deepest one first. `excess` is the depth of each position across the bars minus the median
-        // depth. A bar extends from its deepest position to both sides as far as the excess is at least half as large.
+        // depth of all positions. A bar extends from its deepest position to both sides as far as the excess is at
+        // least half as large as there.
         let mut bars = Vec::new();
         while let Some((peak, &depth)) =
             excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, d)| **d >= MIN_DEPTH)
@@ -250,8 +252,8 @@ pub fn lowest_sharpness(bar: &Bar, sections: &[Section]) -> f64 {
     evident.map(|s| s.sharpness).fold(f64::INFINITY, f64::min)
 }
 
-/// For each position of a line of pixels, writes the maximum of `light` over the `count` positions before it into
-/// `brightest`; 0 for the first position.
+/// Writes to `brightest`, for each position of a line of pixels, the maximum of `light` over the `count` positions
+/// before it; 0 for the first position.
 fn brightest_before<'a>(light: impl Iterator<Item = f32>, count: usize, brightest: impl Iterator<Item = &'a mut f32>) {
     // Keep the positions that may still become the maximum of a window, the brightest first (monotonic queue).
     let mut window: VecDeque<(usize, f32)> = VecDeque::new();

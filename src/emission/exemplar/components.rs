@@ -21,7 +21,7 @@ impl Component {
         [self.max[0] - self.min[0] + 1, self.max[1] - self.min[1] + 1]
     }
 
-    /// The corners of the bounding box with the smallest and the largest coordinates. Pixel (i, j) covers
+    /// The two corners of the bounding box: the smallest coordinates and the largest coordinates. Pixel (i, j) covers
     /// [i, i + 1) × [j, j + 1).
     pub fn bounds(&self) -> (DVec2, DVec2) {
         let corner = |[x, y]: [usize; 2]| DVec2::new(x as f64, y as f64);

@@ -96,7 +96,7 @@ impl Exemplar {
         periods: [Option<f64>; 2],
         is_left_out: impl Fn(DVec2) -> bool,
     ) -> Statistics {
-        // Count every component that is copied as one piece as a lamp.
+        // Every component that is copied as one piece counts as a lamp.
         let Self { width, height, components, .. } = self;
         let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
         // The pattern of a luminous ceiling continues without the dark border around its panes, so measure only inside

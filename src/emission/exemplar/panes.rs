@@ -151,8 +151,8 @@ mod tests {
     }
 
     /// Unwarped image, light mask and validity of a ceiling: panes with sides of 30 pixels and the luminance 1,
-    /// separated by bars of 10 pixels whose luminance is `bar(x, y)`. The mask covers panes and bars, except for a
-    /// margin.
+    /// separated by bars of 10 pixels whose luminance is `bar(x, y)`. The mask covers panes and bars, but not a margin
+    /// of 5 pixels at the border of the image.
     fn ceiling(bar: impl Fn(usize, usize) -> f32) -> [Image; 3] {
         let is_inside = |n: usize| (5..SIDE - 5).contains(&n);
         let colour = |x: usize, y: usize| match is_inside(x) && is_inside(y) {

@@ -3,7 +3,8 @@
 use crate::emission::exemplar::components::{Component, Components};
 use crate::image::Image;
 
-/// Maximum width and height, in texels, of a crumb's bounding box: 2 √`crumb`, where `crumb` limits its area.
+/// Maximum width and height, in texels, of a crumb's bounding box: 2 √`crumb`. Here `crumb` is the area in texels below
+/// which a piece of light is a crumb.
 pub fn max_side(crumb: f64) -> usize {
     (2.0 * crumb.sqrt()).ceil() as usize
 }

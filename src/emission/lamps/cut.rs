@@ -16,7 +16,8 @@ use glam::DVec2;
 /// its bounding rectangle. [convention]
 const MIN_LIT: f64 = 0.92;
 
-/// Adds to `designs` the designs of the lamps that the border cuts.
+/// Adds to `designs` a design for each lamp that the border cuts, unless the visible part shows that it is no
+/// rectangle.
 pub fn complete(mut designs: Designs, exemplar: &Exemplar) -> Designs {
     for component in (0..exemplar.roles.len()).filter(|&k| exemplar.roles[k] == Role::Partial) {
         if let Some((design, fitted)) = rectangle(exemplar, component, designs.kinds.len()) {

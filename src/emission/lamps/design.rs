@@ -525,7 +525,8 @@ mod tests {
 
     #[test]
     fn bloom_that_grows_with_magnification_is_taken_off() {
-        // Sides of 40 unwarped pixels. Bloom moves each edge by 0.8 photo pixels of 1 to 6 unwarped pixels.
+        // Sides of 40 unwarped pixels. Bloom moves each edge by 0.8 photo pixels. A photo pixel is 1 to 6 unwarped
+        // pixels long.
         let pixels = [1.0f64, 1.5, 2.5, 4.0, 6.0];
         let side = common_side(pixels.into_iter().map(|p| (40.0 + 1.6 * p, p))).unwrap();
         assert!((side - 40.0).abs() < 1.0, "{side}");

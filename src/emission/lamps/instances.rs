@@ -52,7 +52,8 @@ struct PatchLamps<'a> {
 }
 
 impl PatchLamps<'_> {
-    /// The pixel of the texture at a position; `None` outside a texture that is not tileable.
+    /// The pixel of the texture at a position. Beyond its border, a tileable texture repeats; for any other texture,
+    /// the result is `None`.
     fn texel(&self, x: i32, y: i32) -> Option<(usize, usize)> {
         let side = |at: i32, side: usize| match self.wraps {
             true => Some(at.rem_euclid(side as i32) as usize),

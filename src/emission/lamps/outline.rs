@@ -99,8 +99,8 @@ impl Ring {
     pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
         let mut outline = if is_soft && narrow > MAX_NARROW_WIDTH {
-            // Begin at the point farthest from the centre, whatever the lamp's orientation. Simplification depends on
-            // where the outline begins, and equal lamps should get equal outlines.
+            // Begin at the point farthest from the centre: it is the same point of the lamp in every orientation.
+            // Simplification depends on where the outline begins, and equal lamps should get equal outlines.
             let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
             let first = farthest(&crossings, middle);
             crossings.rotate_left(first);

@@ -80,7 +80,8 @@ pub fn place(
 
 /// Whether the photo would show all corners of the lamp's bounding box if the lamp were at `centre`.
 fn shows(exemplar: &Exemplar, lamp: &Component, centre: DVec2) -> bool {
-    // Slightly less than half of the box, so that its right and lower edges lie in its last pixels.
+    // Take slightly less than half of the box, so that the right and lower corners lie within the last pixels of the
+    // lamp.
     let half = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64) * (0.5 - 1e-9);
     let corners = [-half, DVec2::new(half.x, -half.y), DVec2::new(-half.x, half.y), half];
     corners.into_iter().all(|corner| {

@@ -101,7 +101,8 @@ fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
 }
 
 /// The smallest period, along x and along y, at which the copied lamps of adjacent repetitions stay apart, in unwarped
-/// pixels: the length of the box around the lamps, plus the shortest gap between lamps. Zero without copied lamps.
+/// pixels. It is the length of the box around the lamps, plus the shortest gap between lamps, or plus [`CELL_GAP`] if
+/// that is larger. Zero without copied lamps.
 fn min_cell(exemplar: &Exemplar) -> DVec2 {
     let pieces = || exemplar.pieces().map(|(_, lamp)| lamp);
     let along = |axis: usize| {
@@ -111,8 +112,8 @@ fn min_cell(exemplar: &Exemplar) -> DVec2 {
     DVec2::new(along(0), along(1))
 }
 
-/// The corners of the bounding box of lamps with the smallest and the largest coordinates. Without lamps, these are +∞
-/// and -∞.
+/// The two corners of the bounding box of lamps: the smallest coordinates and the largest coordinates. Without lamps,
+/// these are +∞ and -∞.
 fn bounds_of<'a>(lamps: impl Iterator<Item = &'a Component>) -> (DVec2, DVec2) {
     lamps
         .map(Component::bounds)

@@ -72,8 +72,8 @@ impl Law {
         })
     }
 
-    /// Returns a lattice whose shortest periods are exactly parallel to the axes if they are nearly parallel. Laws
-    /// other than lattices are returned unchanged.
+    /// Returns the lattice with its two shortest periods, each made exactly parallel to an axis if it is nearly
+    /// parallel. Laws other than lattices are returned unchanged.
     pub fn aligned(self) -> Self {
         match self {
             Self::Lattice(found) => Self::Lattice(basis::reduced(found).map(aligned)),
@@ -81,7 +81,8 @@ impl Law {
         }
     }
 
-    /// Whether the periods are exactly parallel to the axes; true if there are none.
+    /// Whether the periods are exactly parallel to the axes; true if there are none. Of a row, only the period along
+    /// the row counts.
     pub fn is_aligned(&self) -> bool {
         let on_axis = |period: DVec2| period.min_element() == 0.0 || period.max_element() == 0.0;
         match *self {
