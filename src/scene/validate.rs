@@ -8,8 +8,8 @@ use glam::{Mat3, Vec3, Vec4};
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fmt::Display;
 
-/// Largest absolute coordinate of a position, in metres. A product of two coordinates is then at most 1e30, and sums
-/// and multiples of such products stay below the largest `f32`, 3.4e38. [rounding]
+/// Largest absolute coordinate of a position, in metres. A product of two coordinates is then at most 1e30. The sum of
+/// a million such products still stays below the largest `f32`, 3.4e38. [rounding]
 const MAX_COORDINATE: f32 = 1e15;
 
 fn is_place(point: Vec3) -> bool {

@@ -177,7 +177,7 @@ mod tests {
     use crate::scene::Mesh;
     use crate::scene::unrendered::note;
 
-    /// A scene with one square wall, as high and as wide as `height`.
+    /// A scene with one square wall of side `height`, in metres.
     fn room(height: f32) -> Scene {
         let wall = Mesh::parallelogram(Vec3::ZERO, Vec3::X * height, Vec3::Y * height, 0);
         Scene { meshes: vec![wall], ..Scene::default() }
@@ -232,7 +232,8 @@ mod tests {
         let warnings = scene(1e5).warnings();
         assert_eq!((warnings.len(), warnings[0].code, warnings[0].severity), (1, Code::FarFromOrigin, 0.0078125));
         assert!(warnings[0].message.contains("100004 m") && warnings[0].message.contains("7.81 mm"), "{}", warnings[0]);
-        // Near its own origin the scene is not rounded, but its coordinates differ from those in its file.
+        // The positions are small, so they are stored precisely. The warning is still due: the positions differ from
+        // those in the file, because the importer moved the origin.
         let moved = Scene { origin: DVec3::new(3e5, 0.0, -4e5), ..scene(0.0) };
         let warnings = moved.warnings();
         assert_eq!((warnings[0].severity, warnings[0].limit), (5e5, 0.0));

@@ -1,5 +1,6 @@
 //! Applies the classifier to the whole image, in tiles of pixels along the rows. Within a tile, the values of each
-//! feature are contiguous. The logit and the squared distances from the classes are quadratic forms of the features.
+//! feature are contiguous. Two kinds of quadratic forms of the features are evaluated: the logit, and the squared
+//! distance of a pixel from the centre of each class ([`Ellipsoid`]).
 
 use super::ellipsoid::Ellipsoid;
 use super::exponential::exp_f32;
@@ -167,8 +168,9 @@ impl QuadraticForm {
 struct Answer {
     mask: [f32; TILE],
     probability: [f32; TILE],
-    /// How far the features lie outside the ellipsoids of both classes, in `[0, 1]`: 0 inside, `1 - e^(1 - distance)`
-    /// outside, where the distance is 1 on an ellipsoid.
+    /// How far the features lie outside the ellipsoids of both classes, in `[0, 1]`: 0 inside either, else
+    /// `1 - e^(1 - d)`. The distance d is √q, where q is the smaller of the two forms [`Classifier::seen`]; it is 1 on
+    /// an ellipsoid.
     unseen: [f32; TILE],
     /// Whether all distances are finite, which implies that all features in `channels` are finite.
     all_finite: bool,
@@ -178,7 +180,8 @@ struct Answer {
 struct Tile {
     /// The channels as they are stored in the image.
     raw: [ChannelPlane; MAX_CHANNELS],
-    /// `all`: the standardised columns of the samples. `deciding`: the columns that the logit uses.
+    /// `all`: the standardised features that the samples store, in the order of the samples' columns. `deciding`: those
+    /// of them that the logit uses.
     all: [ChannelPlane; MAX_CHANNELS],
     deciding: [ChannelPlane; MAX_CHANNELS],
 }

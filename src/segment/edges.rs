@@ -8,8 +8,8 @@ use crate::job::Job;
 /// Standard deviation of the blur in photo pixels. The edge of a clipped lamp is a staircase of whole pixels; after a
 /// blur of about a pixel, the 0.5 level of a straight edge is straight again. [convention]
 const EDGE_BLUR: f32 = 0.9;
-/// Gaps between lamps of up to this width, in photo pixels, are kept open, because the blur would close some of them.
-/// It closes no gap that is wider than this. [convention]
+/// Dark gaps of at most this width between two lamps are kept open; the width is in photo pixels. The blur would close
+/// some of these gaps, but closes no wider gap. [convention]
 const GAP: usize = 2;
 /// The directions in which a gap is crossed: along a row, a column and the two diagonals.
 const ACROSS: [[isize; 2]; 4] = [[1, 0], [0, 1], [1, 1], [1, -1]];

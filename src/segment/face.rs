@@ -98,7 +98,7 @@ fn marked(mask: &Image) -> impl Iterator<Item = usize> {
     (0..mask.data.len()).filter(|&i| mask.data[i] > 0.5)
 }
 
-/// Removes pixels from the mask that lie on another face of the room than the positive strokes. If the positive
+/// Removes from the mask the pixels that lie on another face of the room than the positive strokes. If the positive
 /// strokes lie on several faces, removes the connected parts of the mask that no positive stroke touches.
 pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
     let is_kept: Box<dyn Fn(usize) -> bool> = match stroked_normal(input, SAME_FACE) {
@@ -146,8 +146,9 @@ fn stroked_normal(input: &Input, cosine: f32) -> Option<Vec3> {
     agreed_normal(input.features, || strokes().map(|&p| p as usize).filter(|p| *p < count), cosine)
 }
 
-/// The common normal of the given pixels. `None` unless at least the share [`AGREEMENT`] of the pixels agree with it:
-/// the cosine between their own normal and the common one is at least `cosine`.
+/// The common normal of the given pixels: the mean of their normals without outliers. `None` unless at least the share
+/// [`AGREEMENT`] of the pixels agree with it; a pixel agrees if the cosine between its normal and the common one is at
+/// least `cosine`. Also `None` if the features have no normals (fewer or more than [`CHANNELS`] channels).
 fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() -> I, cosine: f32) -> Option<Vec3> {
     if features.channels != CHANNELS {
         return None;

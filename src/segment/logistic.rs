@@ -26,7 +26,7 @@ pub struct Objective {
 /// Finds the weights `w` that minimise the objective: the mean log loss plus `ridge / 2 |w|²`. The weight of the
 /// constant term is hardly penalised. The ridge makes the solution finite and unique even if the classes are separable,
 /// or if terms are duplicated or constant. Newton's method starts at `start`. It ends with the first step whose
-/// expected decrease of the objective is below `precision`, or after 30 steps.
+/// expected decrease of the objective is below `precision`, after 30 steps, or if the Hessian is not positive definite.
 pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
     let mut w = start.to_vec();
     let mut here = Objective::at(problem, ridge, &w);
@@ -42,7 +42,8 @@ pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Jo
             break;
         }
 
-        // Take a Newton step; halve its length as long as it would raise the objective.
+        // Take a Newton step. Halve its length as long as it would raise the objective and is at least 1e-6 of a full
+        // step.
         let mut length = 1.0;
         let (next, there) = loop {
             let next = moved(length);

@@ -19,10 +19,11 @@ use std::ops::Range;
 /// The image is filtered in bands of this many rows, in parallel.
 const BAND: usize = 64;
 
-/// Weighted sums over the pixels of a window, for the guide colour I and the probability p. Elements: 1, I (3), p, I p
-/// (3), upper triangle of I Iᵀ (6), unused (2).
+/// Sums over the pixels of a window that lie in the region, for the guide colour I and the probability p. Elements: 1,
+/// I (3), p, I p (3), upper triangle of I Iᵀ (6), unused (2).
 type Moments = [f64; 16];
-/// Weighted sums of the fits `a · I + b` over a window. Elements: 1, a (3), b, unused (3).
+/// Sums of the coefficients of the fits `a · I + b` over the pixels of a window. Elements: number of fits, a (3), b,
+/// unused (3).
 type Fits = [f64; 8];
 
 /// The input and the settings of the filter.
@@ -140,9 +141,9 @@ widest! {
 }
 
 widest! {
-    /// In the window around each pixel of a row, fits the probabilities of the mask by a linear function `a · I + b` of
-    /// the colour I (the guided filter). A fit is stored as five values: 1, which counts the fits when they are
-    /// averaged, a (3 values) and b. For pixels outside the region, all five values are 0.
+    /// In the window around each pixel of a row, fits an affine function `a · I + b` of the colour I to the
+    /// probabilities (the guided filter). A fit is stored as five values: 1, a (3 values) and b. The 1 counts the fits
+    /// when they are averaged. For pixels outside the region, all five values are 0.
     fn fit_row(of: &Refinement, line: &Line, fits: &mut [[f32; 5]]) {
         let width = fits.len();
         let epsilon = of.tolerance * of.tolerance;

@@ -63,8 +63,9 @@ impl Segmentation {
         }
     }
 
-    /// Removes from the mask of a plane the pixels that lie off the plane. Exception: if most of a positive stroke lies
-    /// there, it was painted after the test `is_off` had been made, which is then outdated, and nothing is removed.
+    /// Removes from the mask of a plane the pixels for which `is_off` is true, which lie off the plane. If more than
+    /// half of the pixels of a positive stroke are off, nothing is removed: the user has painted this stroke after
+    /// `is_off` was determined, so `is_off` is out of date.
     pub fn remove_off_plane<'a>(
         &mut self,
         is_off: impl Fn(usize) -> bool,

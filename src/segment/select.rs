@@ -25,10 +25,10 @@ const CV_SAMPLES: usize = 250;
 /// [origin not recorded]
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
 /// A fit ends with the step whose expected decrease of the objective (see `logistic::fit`) is below this value.
-/// `CV_PRECISION` applies to fits that only compare models, `PRECISION` to the final fit. A model pays 1 / 2000 for
-/// each term with the default number of samples, 50 times `CV_PRECISION`. Newton's method converges quadratically:
-/// after a step of `PRECISION`, what is left is of the order of its square, so any value from 1e-12 to 1e-7 gives the
-/// same fit. [convention]
+/// `CV_PRECISION` applies to fits that only compare models. With the default number of samples, the price of a term is
+/// 1 / 2000 (see [`choose`]), which is 50 times `CV_PRECISION`. `PRECISION` applies to the final fit. Newton's method
+/// converges quadratically: after a step that lowers the objective by d, a further decrease of the order of d² remains.
+/// Any `PRECISION` from 1e-12 to 1e-7 therefore gives the same fit. [convention]
 const CV_PRECISION: f64 = 1e-5;
 const PRECISION: f64 = 1e-9;
 

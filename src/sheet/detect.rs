@@ -127,8 +127,8 @@ fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
 
 /// Refines a saddle to sub-pixel precision (Förstner and Gülch 1987). At the corner q of black and white quadrants, the
 /// gradient g at each surrounding point p is perpendicular to p - q. The result minimises Σ w (g · (p - q))², with
-/// weights w that fall with the distance. `None` if the gradients do not determine q, or if the iteration leaves the
-/// radius.
+/// weights w that fall with the distance |p - q|. `None` if the gradients do not determine q, or if an iteration moves
+/// q `radius` pixels or more away from `start`.
 pub fn refine(grey: &Image, start: DVec2, radius: f64) -> Option<DVec2> {
     let mut at = start;
     for _ in 0..12 {

@@ -40,10 +40,10 @@ pub(super) struct Moved {
     pub from: Vec<u32>,
 }
 
-/// Advects the field (the matches) of the previous frame into this frame: `motion` gives the displacement of a patch's
-/// centre to its position in the previous frame, and the patch takes the match found there. `motion` has the
-/// resolution of the guides; this function halves `motion` if the problem has half that resolution (`halved` is not
-/// 0).
+/// Advects the field (the matches) of the previous frame into this frame. `motion` leads from each pixel to the
+/// position of the same surface point in the previous frame. A patch takes the match of the previous frame's patch at
+/// the end of its centre's motion. `motion` has the resolution of the guides; this function halves `motion` if the
+/// problem has half that resolution (`halved` is not 0).
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Moved> {
     if halved == 0 {
         return advect(before, motion, problem.patch);

@@ -5,8 +5,8 @@
 //!
 //! - Each iteration matches the patches astride the border once more, with guides of a lower weight. Strokes that
 //!   cross the border then find places of the artwork where such strokes continue.
-//! - No exemplar patch is used too often. Where the painted part lacks the light of a place, one exemplar patch is
-//!   nearest to all patches of that place, and would fill it with its copies.
+//! - No exemplar patch is used too often. If the painted part lacks the light of a place, one and the same exemplar
+//!   patch is nearest to all target patches of that place. Without a limit, copies of it would fill the place.
 //! - The matches place paint on the painted pixels too. The difference between the artist's paint and this paint would
 //!   show as a step at the border. After the final vote, this difference fades out from the border into the new paint
 //!   (a membrane, as in Pérez et al. 2003, "Poisson Image Editing").
@@ -21,18 +21,19 @@ use crate::patch::{Domain, Field, NONE, Search, SearchIteration, VoteMode, unpac
 
 /// Weight of the guides for patches astride the border, relative to their weight elsewhere. [bench stylit:autocomplete]
 const GUIDES: f32 = 0.1;
-/// `ITERATIONS`: number of iterations of the search for patches astride the border. `RADIUS`: radius of its random
-/// search in pixels.
+/// Settings of the PatchMatch search that matches the patches astride the border once more. `ITERATIONS`: number of
+/// search iterations. `RADIUS`: radius of the random search in pixels.
 const ITERATIONS: usize = 2;
 const RADIUS: usize = 256;
 /// Maximum number of uses of an exemplar patch, as a multiple of the mean number of uses.
 /// [bench stylit:autocomplete]
 const MAX_USES: f64 = 100.0;
-/// Maximum number of rounds. In each round, the target patches beyond the maximum number of uses search for other
-/// matches.
+/// Maximum number of rounds of [`limit_usage`]. In each round, exemplar patches above the maximum number of uses give
+/// up target patches, which then search for other matches.
 const ROUNDS: usize = 8;
-/// `FADE_WIDTH`: number of diffusion steps, and thus of pixels over which a difference at the border fades out.
-/// `DIFFUSION_FACTOR`: factor of each step. [bench stylit:autocomplete]
+/// `FADE_WIDTH`: number of diffusion steps, and thus the number of pixels over which a difference at the border fades
+/// out. `DIFFUSION_FACTOR`: factor on the mean of the neighbours in each step (see [`spread`]).
+/// [bench stylit:autocomplete]
 const FADE_WIDTH: usize = 12;
 const DIFFUSION_FACTOR: f32 = 0.97;
 

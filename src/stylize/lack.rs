@@ -1,8 +1,9 @@
 //! Light of the target that the exemplar lacks.
 //!
-//! The exemplar lacks the light of a place of the target if the guides of light are similar nowhere in the exemplar.
-//! The paint of such a place is a guess. The guide error of a run is high there, but it is also high where a match was
-//! chosen for its colours. Therefore places with a high guide error are compared with a sample of the whole exemplar.
+//! The exemplar lacks the light of a place of the target if no place of the exemplar has similar values of the guides
+//! of light. The paint of such a place is a guess. The guide error of a run is high there, but it is also high where a
+//! match was chosen for its colours. Therefore places with a high guide error are compared with a sample of the whole
+//! exemplar.
 
 use super::guides::{Channels, SIMILAR};
 use crate::error::Result;
@@ -26,12 +27,13 @@ const BLOCK: usize = 8;
 pub struct Lack {
     /// The share of the pixels to paint whose light the exemplar lacks.
     pub share: f64,
-    /// Centre, in pixels of the target, of the block with the most pixels of this kind.
+    /// Centre, in pixels of the target, of the block with the most samples whose light the exemplar lacks; `None` if
+    /// `share` is 0.
     pub place: Option<[usize; 2]>,
 }
 
-/// The guides of light at the samples of exemplar and target. They are kept from before a preview mixes the channels
-/// of light with those of data.
+/// The guides of light at the samples of exemplar and target. They are taken before a preview compresses the guides,
+/// which mixes the channels of light with those of data.
 pub(super) struct LightSamples {
     codes: Codes,
     /// One pixel per sample of the target, with all channels of the guides.

@@ -245,8 +245,8 @@ impl<'a> Level<'a> {
         self.target.fill(0, &self.colours, picture, job)
     }
 
-    /// Marks the wanted patches that contain a pixel whose colour differs in `picture`; the distances of all other
-    /// patches remain valid.
+    /// Marks the wanted patches that contain a pixel whose quantised colour in `picture` differs from that in
+    /// `self.target`. The distances of all other patches remain valid.
     pub fn changed_by(&self, picture: &Image, job: Job) -> Result<Vec<bool>> {
         let (width, lanes) = (picture.width, self.target.lanes);
         let mut differs = try_vec(width * picture.height, false)?;

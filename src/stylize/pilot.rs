@@ -156,8 +156,9 @@ fn is_near(problem: &Problem) -> bool {
     pixels(&problem.style).min(pixels(&problem.guides.target)) <= MAX_PIXELS
 }
 
-/// Extrapolates the energies at three resolutions by `steps` further resolutions. The logarithm of the energy changes
-/// from one resolution to the next; each change is a constant fraction of the previous change (Aitken 1926).
+/// Extrapolates the energies at three resolutions by `steps` further resolutions. Each change of the energy's logarithm
+/// from one resolution to the next is a constant fraction of the previous change (Aitken 1926). The fraction is the
+/// ratio of the two measured changes, limited to `[0.5, 1]`.
 fn extrapolate([far, middle, near]: [f64; 3], steps: usize) -> f64 {
     let step = |from: f64, to: f64| if from > 0.0 && to > 0.0 { (to / from).ln() } else { 0.0 };
     let [before, mut last] = [step(far, middle), step(middle, near)];

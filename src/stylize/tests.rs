@@ -190,7 +190,7 @@ fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
     };
     let (none, plain) = (with(Mode::Occurrence, 0.0), with(Mode::Nearest, 0.1));
     assert!(none.image == plain.image && none.field == plain.field && none.report.levels == plain.report.levels);
-    // Test weights up to 0.1, at which nearly all patches are used; larger weights only permute them.
+    // Test weights up to 0.1, at which nearly all exemplar patches are used. Larger weights hardly use more of them.
     let runs = [0.0, 0.003, 0.01, 0.1].map(|weight| with(Mode::Occurrence, weight));
     let usage = runs.each_ref().map(|run| run.report.usage);
     assert!(usage.windows(2).all(|w| w[1].used > w[0].used && w[1].entropy > w[0].entropy), "{usage:?}");

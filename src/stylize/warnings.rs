@@ -7,8 +7,9 @@ use crate::image::Comparison;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
-/// Maximum share of the pixels whose motion may lead to another surface in the previous frame. With a correct motion,
-/// this share is nearly 0; errors of the motion of up to one pixel do not count. [judged on 1 scene]
+/// A warning is given if the motion of more than this share of the compared pixels leads to another surface in the
+/// previous frame. With a correct motion, the share is nearly 0. Errors of the motion of up to one pixel do not count.
+/// \[judged on 1 scene\]
 pub const MAX_DISAGREEMENT: f64 = 0.001;
 
 /// Warns if the motion disagrees with the guides: if it leads too many pixels to another surface.
@@ -24,12 +25,14 @@ pub fn motion_disagrees(comparison: Comparison) -> Option<Warning> {
     Some(Warning::above(Code::MotionDisagrees, share, MAX_DISAGREEMENT, message, advice)?.at(centre(place)))
 }
 
-/// Maximum share of the pixels to paint whose light the exemplar may lack. [bench stylit:autocomplete]
+/// A warning is given if the exemplar lacks the light of more than this share of the pixels to paint.
+/// \[bench stylit:autocomplete\]
 pub const MAX_LACK: f64 = 0.01;
-/// Maximum share of the exemplar whose light may be painted in two ways. [bench stylit:doubts]
+/// A warning is given if the share [`Doubts::ambiguous`] of blocks whose light has two paints exceeds this.
+/// \[bench stylit:doubts\]
 pub const MAX_AMBIGUOUS: f64 = 0.18;
-/// Maximum difference of a place of the artwork to all places with similar light, in units of the grain.
-/// [bench stylit:doubts]
+/// A warning is given if a block of the artwork differs from nearly all other blocks with similar guides by more than
+/// this, in grains ([`Doubts::blemish`]). \[bench stylit:doubts\]
 pub const MAX_BLEMISH: f64 = 13.0;
 
 impl Report {

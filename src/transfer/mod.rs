@@ -88,8 +88,8 @@ pub struct Input {
     /// The triangles of the scene that receive the lights, as pairs of indices (mesh, triangle). If the list is not
     /// empty, it is used instead of `surface`.
     pub triangles: Vec<(usize, usize)>,
-    /// Rectangles of the surface that must stay free of lamps: `(u0, v0, u1, v1)` in metres along the surface's axes,
-    /// from its corner.
+    /// Rectangles of the surface that must stay free of lamps: `(u0, v0, u1, v1)`, in metres along the surface's axes
+    /// from the corner [`Surface::origin`].
     pub zones: Vec<DVec4>,
     /// The camera of the picture. If absent, the scene's first camera is used; if the scene has no camera, one is
     /// chosen.

@@ -22,7 +22,8 @@ pub(super) fn find(
     if surface.is_rectangle() && !keeps_margin && zones.is_empty() {
         return Ok(None);
     }
-    // If lamps may cross the surface's edge (no margin), include texels of which only a part is visible.
+    // With a negative margin, lamps may cross the surface's edge. Then also include texels that the surface covers
+    // only in part.
     let covered = surface.covered_texels(scene, size, !keeps_margin)?;
     let texels_per_metre = size.as_dvec2() / surface.size.as_dvec2();
     let in_zone = |texel: DVec2| {
@@ -71,7 +72,8 @@ mod tests {
         let of = |margin: f64, zones: &[DVec4]| {
             find(&scene, (&surface, &surface), margin, zones, size, Monitor::default().job()).unwrap().unwrap()
         };
-        // 4 of 24 m² are hidden. The texels found are fewer by a strip of one texel along the two inner edges.
+        // 4 of 24 m² are hidden. The hidden texels cover slightly less: a strip one texel wide along the two inner
+        // edges is open.
         let cut = of(-1.0, &[]);
         assert!((share(&cut, TexelZone::Hidden) - 1.0 / 6.0).abs() < 0.004 && share(&cut, TexelZone::KeepOut) == 0.0);
         // With a margin of 0.3 m, the open part is the L shrunk by the margin. Its inner corner is rounded with a

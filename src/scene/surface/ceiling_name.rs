@@ -1,8 +1,8 @@
 //! Recognises names of ceilings in several languages.
 
 /// Words for a ceiling, in lower case. `HEADS` may also end a compound, such as "Zimmerdecke" or "controsoffitto".
-/// `WORDS` must stand alone, because they end other words: an "arquiteto" is an architect. Japanese puts no spaces
-/// between words, so `PARTS` may stand anywhere.
+/// `WORDS` count only as whole words, because unrelated words end in them: an "arquiteto" is an architect. Japanese
+/// puts no spaces between words, so `PARTS` may stand anywhere within a word.
 const HEADS: [&str; 10] =
     ["ceiling", "ceilings", "decke", "decken", "plafond", "plafonds", "soffitto", "soffitti", "потолок", "потолки"];
 const WORDS: [&str; 4] = ["techo", "techos", "teto", "tetos"];
@@ -18,7 +18,8 @@ const CORNERS: [&str; 3] = ["wan", "ran", "bil"];
 
 /// Whether a name contains a word for a ceiling.
 pub fn is_ceiling(name: &str) -> bool {
-    // The letters of the name up to the end of the current word show that "Bett_Decke" is a blanket.
+    // `letters` joins the words of the name up to the current one. "Bett_Decke" becomes "bettdecke", which is a
+    // blanket.
     let mut letters = String::new();
     words(name).split_whitespace().any(|word| {
         letters.push_str(word);
@@ -44,7 +45,8 @@ fn words(name: &str) -> String {
     words
 }
 
-/// Whether the letters end in a German word of [`BLANKETS`] or [`CORNERS`] with the head `head`.
+/// Whether `letters` end in a German compound that means no ceiling: a beginning from [`BLANKETS`] or [`CORNERS`], then
+/// `head`. False unless `head` is "decke" or "decken".
 fn is_other_compound(letters: &str, head: &str) -> bool {
     let Some(first) = letters.strip_suffix(head).filter(|_| head.starts_with("decke")) else { return false };
     BLANKETS.iter().chain(&CORNERS).any(|other| first.ends_with(other))
@@ -99,7 +101,7 @@ mod tests {
         ] {
             assert!(!is_ceiling(name), "{name}");
         }
-        // A ceiling is still recognised beside a bed.
+        // A bed elsewhere in the name does not turn a ceiling into a blanket.
         assert!(is_ceiling("Schlafzimmerdecke") && is_ceiling("Decke über Bett"));
     }
 }

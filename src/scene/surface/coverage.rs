@@ -6,7 +6,8 @@ use crate::image::try_vec;
 use crate::scene::Scene;
 use glam::{DVec2, DVec3, UVec2};
 
-/// Width in texels by which triangles are enlarged, so that no texel between two adjacent triangles is lost. [rounding]
+/// Distance in texels by which each edge of a triangle is moved outwards. Without it, rounding could leave a texel
+/// centre on the common edge of two triangles outside both. [rounding]
 const CRACK: f64 = 1e-3;
 /// A surface counts as a full rectangle if its area is at least this share of its bounding rectangle's area.
 /// [rounding]
@@ -18,8 +19,8 @@ impl Surface {
         self.area >= FULL * self.size.element_product()
     }
 
-    /// Converts a point, in metres from the corner of this surface, to coordinates of another surface in the same
-    /// plane.
+    /// Converts a point from coordinates on this surface to coordinates on another surface in the same plane. The
+    /// coordinates of a surface are metres from its `origin` along its u and v axes.
     pub fn to_other(&self, other: &Self, at: DVec2) -> DVec2 {
         let point = self.origin.as_dvec3() + self.u_axis.as_dvec3() * at.x + self.v_axis.as_dvec3() * at.y;
         let offset = point - other.origin.as_dvec3();

@@ -21,9 +21,9 @@ const CAMERA_WEIGHT: f64 = 4.0;
 /// (Rays from the upper side of a ceiling hit nothing; rays inside a slab end at once.) The score of a side is the
 /// product of three factors:
 ///
-/// - its area,
+/// - the area of the plane,
 /// - the mean of `min(1, distance / √area)` over the rays; a ray that hits nothing counts as 0,
-/// - a factor for the cameras in front of it ([`CAMERA_WEIGHT`]).
+/// - a factor for the cameras in front of the side ([`CAMERA_WEIGHT`]).
 ///
 /// In an otherwise empty scene all scores are 0, and the result is the front side of the first plane.
 pub fn facing(scene: &Scene, patches: &[Patch]) -> Result<(usize, DVec3)> {
@@ -55,14 +55,14 @@ fn front_normal(scene: &Scene, patch: &Patch) -> DVec3 {
     if signed < 0.0 { -patch.normal } else { patch.normal }
 }
 
-/// Share of the scene's cameras that are in front of the plane.
+/// Share of the scene's cameras on the side of the plane to which `normal` points; 0 without cameras.
 fn cameras(scene: &Scene, patch: &Patch, normal: DVec3) -> f64 {
     let in_front = scene.cameras.iter().filter(|c| (c.position.as_dvec3() - patch.centre).dot(normal) > 0.0).count();
     in_front as f64 / scene.cameras.len().max(1) as f64
 }
 
-/// Returns how far one can see from one side of a plane, in `[0, 1]`: the mean of `min(1, distance / √area)` over
-/// [`RAYS`] rays.
+/// Returns how far one can see from one side of a plane, in `[0, 1]`. It is the mean of `min(1, distance / √area)` over
+/// [`RAYS`] rays, where `area` is the area of the plane. A ray that hits nothing counts as 0.
 fn mean_clear_distance(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: DVec3) -> f64 {
     // Accumulate the areas of the triangles, to sample triangles in proportion to area.
     let mut sums = Vec::with_capacity(patch.triangles.len());

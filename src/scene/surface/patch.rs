@@ -13,7 +13,8 @@ const COS_ANGLE: f64 = 0.999_390_827;
 const OFFSET: f64 = 5e-4;
 /// Side of a cell in the grid of unit normals: the angle of [`COS_ANGLE`] in radians. [convention]
 const DIRECTION_CELL: f64 = 0.035;
-/// Maximum number of directions along which planes are searched, in order of decreasing area.
+/// Maximum number of normals for which planes are searched. The normals shared by the largest area of triangles come
+/// first.
 const DIRECTIONS: usize = 32;
 /// Maximum number of planes returned.
 const PLANES: usize = 16;
@@ -50,9 +51,10 @@ struct Facet {
 
 /// Returns the planes of the triangles, largest first, without small planes.
 ///
-/// First the normals are accumulated in the cells of a grid of directions, weighted by area. Opposite normals count as
-/// one direction, since sheets may be wound either way. Then, for each cell of large area, the triangles with this
-/// normal are sorted by their offset along it, and triangles of about equal offset form a plane.
+/// First the areas of the triangles are summed by normal, in the cells of a grid of unit vectors. Opposite normals
+/// count as equal, since sheets may be wound either way. The cells with the largest sums give the normals of the
+/// planes. For each normal, the triangles that have it are sorted by their offset along it. Triangles of about equal
+/// offset form a plane.
 pub fn planes(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<Patch>> {
     let facets = try_collect(triangles.iter().filter_map(|&id| facet(scene, id)))?;
     let no_area = || Error::degenerate(format!("its {} triangles have no area", triangles.len()));
@@ -123,7 +125,7 @@ fn unsigned(direction: DVec3) -> DVec3 {
 }
 
 /// Returns the unassigned facets of the plane with the largest area among the planes perpendicular to `direction`;
-/// `None` if no facet is left.
+/// `None` if no unassigned facet is perpendicular to `direction`.
 fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -> Option<Vec<usize>> {
     let mut offsets: Vec<(f64, usize)> = facets
         .iter()
@@ -151,7 +153,8 @@ fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -
         return None;
     }
 
-    // Select the facets again by the normal and offset of this plane: the given direction is only approximate.
+    // Fit a plane to the facets in the window, and select the facets again by the plane's normal and offset. They are
+    // more precise than `direction`, which is a mean over a cell.
     let members: Vec<usize> = window.iter().map(|w| w.1).collect();
     let plane = gather(facets, &members, tolerance);
     let belongs = |f: &Facet| {

@@ -15,12 +15,13 @@ pub struct Placed {
     pub material: usize,
 }
 
-/// Maps an emissive texture onto the bounding rectangle of a surface. The patch becomes a separate mesh with a second
-/// set of texture coordinates and a copy of its material that emits `strength × texture` in cd/m².
+/// Maps an emissive texture onto the bounding rectangle of a surface. The triangles of the surface are moved to a new
+/// mesh, with a second set of texture coordinates. The new mesh gets a copy of the surface's material. This copy emits
+/// `strength × texture` in cd/m².
 ///
-/// The front of the patch faces the room, and only the front emits. The original meshes keep their indices and their
-/// other triangles. A patch that spans several meshes copies the material of the mesh that contributes most of the
-/// patch's area.
+/// The front of the new mesh faces the room, and only the front emits. The original meshes keep their indices and their
+/// other triangles. If the surface spans several meshes, the material is that of the mesh with the largest share of the
+/// surface's area.
 ///
 /// Errors: `InvalidArgument` for a surface of another scene, or for a negative or non-finite texture or strength.
 pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec3) -> Result<Placed> {

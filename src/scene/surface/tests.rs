@@ -195,8 +195,8 @@ fn placing_splits_the_patch_off_and_lays_the_texture_over_it() {
     // The patch is found by its own name.
     assert_eq!(find(&scene, "Lid (lights)").unwrap().size, surface.size);
 
-    // A sheet loses all triangles but keeps its mesh index. Its name, which is part of the patch's name, now finds the
-    // patch.
+    // All triangles of a sheet move to the patch. The sheet's empty mesh keeps its index. The name "Lid" now finds the
+    // patch "Lid (lights)", because meshes without triangles are ignored.
     let mut scene = shell();
     let index = cover(&mut scene, "Lid").unwrap();
     let surface = find(&scene, "Lid").unwrap();

@@ -13,7 +13,8 @@ pub const MIN_AREA: f64 = 6.0;
 /// A region under a stroke must hold at least this share of the stroke's pixels. A region with less is touched by the
 /// stroke's edge only. [judged on 28 photos]
 const MIN_COVER: f64 = 0.03;
-/// If a region is this many times as long as its stroke, its gain (see `of_stroke`) is halved. [judged on 28 photos]
+/// A region whose length is this many times the length of its stroke has half the gain that it would have if it were
+/// short (see `of_stroke`). [judged on 28 photos]
 const USUAL_EXTENT: f64 = 4.0;
 /// Exponent of the cover in the gain of a region (see `of_stroke`). The cover is the share of the stroke's pixels that
 /// the region holds. Because the exponent is above 1, a region has a larger gain than its parts together, at equal
@@ -57,7 +58,8 @@ pub fn is_outermost(tree: &Tree, is_chosen: &[bool], node: u32) -> bool {
 
 /// Finds the disjoint nodes under a stroke with the largest sum of gains. The gain is the score by which the nodes
 /// compete: contour gradient × cover ^ `COVER_POWER` × purity ^ `PURITY_POWER` / (1 + (l / (`USUAL_EXTENT` × s))²),
-/// where l is the length of the node and s the length of the stroke. `covered` holds zeros before and after the call.
+/// where l is the long axis of the node's ellipse ([`Regions::axes`]), and s the diagonal of the stroke's bounding box.
+/// `covered` holds zeros before and after the call.
 fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], covered: &mut [f64]) -> Vec<u32> {
     // Collect the nodes that hold pixels of the stroke, parents first, and count these pixels in `covered`.
     let mut nodes = Vec::new();

@@ -20,8 +20,9 @@ const MIN_LIGHTNESS: f64 = 80.0;
 const MIN_RING: f64 = 10.0;
 /// Minimum solidity of a lamp (see `Regions::solidity`). [bench photos:nostrokes]
 const MIN_SOLIDITY: f64 = 0.75;
-/// Maximum share of the plane that a lamp may cover, measured on the face of the room if it has a box layout: a lamp
-/// above the camera may fill much of the photo. [bench photos:nostrokes]
+/// Maximum share of the plane that a lamp may cover. If the room has a box layout, the share is measured in areas on
+/// the room's face: a lamp close above the camera covers much of the plane in the photo, but little on the face itself.
+/// [bench photos:nostrokes]
 const MAX_SHARE: f64 = 0.25;
 /// At least this share of the ring of pixels around a lamp must lie on the plane. [bench photos:nostrokes]
 const ON_PLANE: f64 = 0.6;

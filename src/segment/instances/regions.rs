@@ -89,8 +89,8 @@ impl Brightness {
     }
 }
 
-/// Sums over the pixels of each node of the component tree. Each pixel is weighted by the area of the room's face that
-/// it shows.
+/// Sums over the pixels of each node of the component tree. A pixel's weight is the area of the room's face that it
+/// shows; only `on_face` counts pixels. u and v are coordinates on the face ([`Footprint::at`]).
 pub struct OnFace {
     pub area: Vec<f64>,
     /// For each node, the number of its pixels that show the face itself, not its extension beyond the edges.

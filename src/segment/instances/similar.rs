@@ -40,8 +40,9 @@ const MAX_FACE_AREA_RATIO: f64 = 4.0;
 /// lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// A lamp under a stroke with fewer pixels than this share of the largest one is too small to measure: the limits of
-/// area and aspect on the plane do not depend on it. [judged on 44 photos]
+/// Minimum number of pixels of a measured lamp, relative to the largest lamp under a stroke. Smaller lamps under
+/// strokes are too small to measure. They do not count in the limits of area and aspect on the plane. [judged on 44
+/// photos]
 const MIN_MEASURED_SHARE: f64 = 0.01;
 /// Maximum ratio of a lamp's breadth (short axis of its ellipse, in pixels) to the breadth of the broadest lamp under a
 /// stroke. It applies only if the room has no box layout. [judged on 28 photos]
@@ -55,7 +56,8 @@ const ON_PLANE: f64 = 0.5;
 const ON_FACE: f64 = 0.9;
 /// A region is like a known lamp if its area divided by the lamp's area lies in `EQUAL_AREA`, and its aspect divided by
 /// the lamp's aspect lies in `EQUAL_ASPECT`. Two kinds of regions must be like a known lamp: those off the plane, and
-/// those that meet only the weaker limits [`ALIKE`]. Blur enlarges distant lamps. [bench photos:tune]
+/// those that meet only the weaker limits [`ALIKE`]. The area may deviate more upwards than downwards, because blur
+/// enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the width of the

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::image::{Image, try_collect, try_push, try_vec};
 
 /// Distance from a region beyond which its confidence is 0, in pixels.
-/// [convention: the radius of bilinear sampling, twice]
+/// [convention: twice the radius of bilinear sampling]
 const MAX_DISTANCE: u8 = 2;
 /// Minimum confidence of pixels in a region, and maximum confidence of pixels around it, so that a threshold of one
 /// half gives exactly the region. [rounding]

@@ -11,7 +11,7 @@ use glam::{DVec2, Vec3};
 const WIDTH: usize = 320;
 const HEIGHT: usize = 200;
 
-/// Rectangles [x0, y0, x1, y1) of lamps on a ceiling that fills the rows above 120.
+/// Rectangles [x0, y0, x1, y1) of lamps. They lie on a ceiling that fills the image rows 0 to 119.
 const LAMPS: [[usize; 4]; 5] =
     [[20, 20, 60, 32], [120, 20, 160, 32], [220, 20, 260, 32], [60, 70, 90, 79], [160, 70, 190, 79]];
 /// A window in the wall, as bright as the lamps.
@@ -105,7 +105,7 @@ fn a_negative_stroke_takes_a_lamp_out() {
 #[test]
 fn a_few_negative_pixels_do_not_take_out_a_lamp_like_the_painted_one() {
     let ceiling = ceiling();
-    // The lamp has 480 pixels, of which 0.5 % may lie under negative strokes.
+    // The third lamp has 480 pixels, of which 0.5 % (2.4) may lie under negative strokes.
     for (count, is_found) in [(2, true), (4, false)] {
         let pixels = (0..count).map(|x| (26 * WIDTH + 238 + x) as u32).collect();
         let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]]), Stroke { pixels, positive: false }];
@@ -254,7 +254,8 @@ fn without_strokes_the_brightest_compact_regions_of_the_plane_are_lamps() {
 
 #[test]
 fn without_strokes_a_lamp_above_the_camera_may_fill_much_of_the_photo() {
-    // A level ceiling that recedes downwards: the lamp covers 31 % of its pixels, but 0.4 % of its area.
+    // A horizontal ceiling; lower rows of the photo show its more distant parts. The lamp covers 31 % of the ceiling's
+    // pixels, but only 0.4 % of its area.
     let mut features = features_with(&[[60, 0, 260, 60]]);
     for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
         let depth = 200.0 / (125.0 - (i / WIDTH).min(119) as f32);
@@ -280,14 +281,15 @@ fn without_strokes_and_without_lamps_the_error_asks_for_strokes() {
 
 #[test]
 fn a_lamp_in_a_row_with_others_beyond_the_plane_is_told_apart_from_a_window() {
-    // The plane's mask ends above the second row of lamps, as if the layout had placed a wall too near.
+    // The plane's mask ends at y = 50, as if the layout had placed a wall too near. Two bright regions of the
+    // ceiling lie outside the mask: a lamp below the first lamp, and a tall window.
     let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();
     let rows = [[20, 20, 60, 32], [120, 20, 160, 32], [22, 70, 60, 81], [200, 66, 206, 106]];
     let lamps = segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&cut));
     let columns = |s: &Stroke| s.pixels.iter().map(|p| *p as usize % WIDTH).collect::<Vec<_>>();
     assert_eq!(lamps.beyond.len(), 1, "{:?}", lamps.beyond.iter().map(columns).collect::<Vec<_>>());
     assert!(columns(&lamps.beyond[0]).iter().all(|x| (20..63).contains(x)));
-    // If the mask covers the whole plane, that lamp does not lie beyond it.
+    // If the mask covers the whole ceiling, no lamp lies beyond it.
     assert!(
         segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&ceiling()))
             .beyond

@@ -12,8 +12,9 @@ const COLOURS: [(Kind, [f32; 3]); 4] = [
     (Kind::NotLight, [0.0, 0.0, 1.0]),
 ];
 /// Largest deviation from a stroke colour in any sRGB channel, in `[0, 1]`. It allows for JPEG artefacts and soft
-/// brushes. Stroke colours differ by 1 in some channel, so no pixel matches two below 0.5; any value from 0.2 to 0.49
-/// reads strokes with noise of up to 0.2 alike. [convention]
+/// brushes. Any two stroke colours differ by 1 in some channel, so with a tolerance below 0.5 no pixel matches two of
+/// them. If the noise of the strokes is at most 0.2, any tolerance from 0.2 to 0.49 gives the same strokes.
+/// [convention]
 const TOLERANCE: f32 = 0.3;
 /// Minimum number of pixels of a stroke; smaller components are compression artefacts.
 const SPECK: usize = 4;

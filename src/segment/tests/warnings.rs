@@ -158,7 +158,7 @@ fn regions_that_may_be_lamps_raise_a_warning_with_a_place_on_one() {
     assert!((warnings[0].severity - 1.0 / 3.0).abs() < 1e-9);
     let place = warnings[0].place.unwrap();
     assert!(square(place.x as usize, place.y as usize, 100), "{place}");
-    // Lamps proposed without any stroke raise the same warning, in other words.
+    // Lamps proposed without any stroke raise the same warning, with a different text.
     let proposed = Segmentation { samples: [0, 0], is_proposed: true, ..lamps(third) };
     assert_eq!(codes(proposed.warnings()), [Code::Proposed, Code::Unseen]);
     assert!(proposed.warnings()[1].message.contains("proposed lamps"), "{:?}", proposed.warnings());
