@@ -156,7 +156,8 @@ impl Evidence {
             })
             .collect();
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // Support of a value: the weight of all values within 4 %. Take the best, drop its neighbours, and repeat.
+        // The support of a value is the total weight of all values within 4 % of it. Take the best value, drop those
+        // within 4 % of it, and repeat.
         let support = |v: f64| values.iter().filter(|(u, _)| (u / v).ln().abs() < 0.04).map(|(_, w)| w).sum::<f64>();
         let mut ranked: Vec<(f64, f64)> = values.iter().map(|&(v, _)| (v, support(v))).collect();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));

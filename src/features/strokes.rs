@@ -53,7 +53,8 @@ pub fn stroke_samples(
     Ok(stroke_samples.filter(|sample| sample.ray.is_finite()).collect())
 }
 
-/// Samples the surfaces over which strokes have grown.
+/// Samples the surfaces over which strokes have grown: at most one sample for each grid cell and each kind of surface,
+/// at the mean position of its pixels. The weight of a sample is in proportion to its number of pixels.
 pub fn surface_samples(
     surfaces: &Surfaces,
     room: &RoomView,

@@ -120,7 +120,7 @@ fn normals_and_positions_of_an_exact_room_are_exact_away_from_its_seams() {
 fn noise_depth_edges_and_holes_leave_normals_robust() {
     let (width, height) = (320, 240);
     let camera = camera(0.0, 0.0, 0.0, width, height);
-    // A nearby slanted board stands in front of the back wall, with 0.2 % noise in depth and a hole.
+    // A nearby slanted board stands in front of the back wall. The depth has 0.2 % noise, and the board has a hole.
     let noise = |x: usize, y: usize| 1.0 + 0.002 * Rng::new(5, &[x as u64, y as u64]).normal();
     let board = |x: usize| x > 100 && x < 220;
     let depth = Image::from_fn(width, height, |x, y| {

@@ -161,7 +161,7 @@ pub struct Extras {
     pub caustics: bool,
 }
 
-/// A guide: its image of the exemplar's scene (`source`) and its image of the target scene (`target`).
+/// A guide: one image that shows the exemplar's scene (`source`), and one that shows the target scene (`target`).
 #[derive(Clone, Debug)]
 pub struct Pair {
     pub name: &'static str,
@@ -174,8 +174,8 @@ pub struct Pair {
     pub is_extra: bool,
 }
 
-/// Returns the guides of an exemplar and a target at a common exposure: the 90th percentile of luminance over the full
-/// pictures of both scenes becomes [`BRIGHT`].
+/// Returns the guides of an exemplar and a target at a common exposure: the 90th percentile of luminance, over the
+/// pixels of both full pictures together, becomes [`BRIGHT`].
 pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pair>> {
     let exposure = exposure(&source.light[0], &target.light[0])?;
     let mut pairs = Vec::new();
@@ -209,7 +209,8 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
 /// The value that the 90th percentile of luminance gets at the common exposure. [convention]
 const BRIGHT: f32 = 0.8;
 
-/// Returns the factor that converts luminance in cd/m² to values at the common exposure; 1 if the pictures are black.
+/// Returns the factor that converts luminance in cd/m² to values at the common exposure; 1 if the 90th percentile of
+/// luminance is 0.
 pub fn exposure(source: &Image, target: &Image) -> Result<f32> {
     let pixels = source.data.chunks_exact(3).chain(target.data.chunks_exact(3));
     let mut luminances = try_collect(pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()))?;

@@ -13,8 +13,8 @@ use crate::job::Job;
 use crate::scene::Camera;
 use glam::Vec3;
 
-/// A point was occluded in the previous frame if its depth exceeds the depth seen there by more than this share.
-/// [origin not recorded]
+/// A point counts as occluded in the previous frame if its depth there exceeds the depth of the surface that the
+/// previous frame shows at its position by more than this share. [origin not recorded]
 const DEPTH_TOLERANCE: f32 = 0.02;
 
 /// The motion between two frames.
@@ -143,7 +143,7 @@ impl Frames<'_> {
 }
 
 impl Surfaces {
-    /// Returns the surface point that the pixel at a position shows.
+    /// Returns the surface point that the pixel at a position shows; `None` if the pixel shows no surface.
     fn at(&self, [x, y]: [f32; 2]) -> Option<&Point> {
         self.points[y as usize * self.width + x as usize].as_ref()
     }

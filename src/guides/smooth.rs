@@ -11,7 +11,8 @@ use glam::Vec3;
 const PASSES: u32 = 3;
 /// The cubic B-spline that each pass applies along x and y. [convention]
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
-/// Relative difference in brightness at which the weight of a neighbour falls to 1/e. [origin not recorded]
+/// Difference in brightness at which the weight of a neighbour falls to 1/e, relative to the mean brightness of both
+/// pixels. [origin not recorded]
 const TOLERANCE: f32 = 0.25;
 
 /// Averages the light over neighbours of the same material, similar normal and similar brightness. Brightness is
@@ -38,8 +39,8 @@ struct Surface<'a> {
 }
 
 impl Surface<'_> {
-    /// Computes weighted means of `light` over 5 × 5 pixels that lie `step` pixels apart. The weight of a neighbour
-    /// contains the factor `range_weight(a, b)`, where `a` and `b` are the luminances of the centre pixel and of the
+    /// Computes weighted means of `light` over 5 × 5 pixels that lie `step` pixels apart. The weight of a neighbour is
+    /// multiplied by `range_weight(a, b)`, where `a` and `b` are the luminances of the centre pixel and of the
     /// neighbour in the image `guide`.
     fn average(
         &self,

@@ -27,7 +27,7 @@ pub struct Surfaces {
 /// A point on a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Number of the mesh in [`World::meshes`].
+    /// Index of the mesh in [`World::meshes`].
     pub mesh: u32,
     /// Indices of the triangle's corners among the vertices of the mesh.
     pub corners: [u32; 3],

@@ -1,9 +1,10 @@
-//! Reads and writes whole files, such that a failed write does not destroy the caller's old file.
+//! Reads and writes whole files. If a regular file cannot be written, its old content remains, with the exceptions
+//! below.
 //!
-//! A regular file is replaced as a whole: the bytes are written to a new file in the same folder, which is then
-//! renamed to replace the old file and takes over its mode and owner. Symbolic links are followed. Targets that cannot
-//! be replaced in this way are written in place: a device, a FIFO, a file with several names (hard links), or a file
-//! in a folder that accepts no new files.
+//! A regular file is replaced as a whole: the bytes are written to a new file in the same folder, which takes over the
+//! mode and the owner of the old file and is then renamed to replace it. Symbolic links are followed. Targets that
+//! cannot be replaced in this way are written in place: a device, a FIFO, a file with several names (hard links), or a
+//! file in a folder that accepts no new files. A failed write may then leave part of the new content.
 
 use crate::error::{Error, ErrorKind, Result};
 use std::fs::{self, File, Metadata, OpenOptions};
@@ -114,7 +115,8 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Writes a new file in the folder of `file`, and renames it to replace `file`.
+/// Writes a new file in the folder of `file`, and renames it to `file`. `old` is the metadata of the file that it
+/// replaces, if any. After an error, the new file is removed, and `file` is unchanged.
 fn replace(file: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     let (path, mut neighbour) = create_neighbour(file, old.is_some())?;
     let written = fill(&mut neighbour, old, bytes);

@@ -129,7 +129,8 @@ pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     }
 }
 
-/// Encodes a linear image of 1, 3 or 4 channels as an 8-bit sRGB PNG. The colours are first multiplied by `exposure`.
+/// Encodes a linear image of 1, 3 or 4 channels as an 8-bit sRGB PNG. The colours are first multiplied by `exposure`;
+/// the fourth channel is alpha and is stored as it is.
 pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
     let colour = match image.channels {
         1 => image::ExtendedColorType::L8,
@@ -224,7 +225,8 @@ mod tests {
         let mut exr = encode_exr(&[Layer { name: "", image: &image, channels: &["Y"] }], &[]).unwrap();
         assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
         // Find the offset table, which has one entry. The only tile follows the table, and begins with its column, its
-        // row, and its resolution level along x and along y. Change the level along x, to one that also has one pixel.
+        // row, and its resolution level along x and along y. Change the level along x from 0 to 10. In both levels,
+        // this picture would have one pixel.
         let table = (0..exr.len() - 8).find(|&at| exr[at..at + 8] == (at as u64 + 8).to_le_bytes()).unwrap();
         assert_eq!(exr[table + 8..table + 24], [0; 16]);
         exr[table + 16] = 10;

@@ -38,7 +38,7 @@ impl Curve {
     }
 }
 
-/// Whether a function equals the sRGB curve within the precision of files.
+/// Whether a function equals the sRGB curve at all 8-bit codes, within the precision of files.
 pub fn is_srgb(function: impl Fn(f64) -> f64) -> bool {
     (0..=255).all(|code| {
         let code = code as f32 / 255.0;

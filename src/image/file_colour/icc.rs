@@ -96,7 +96,7 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     }
 }
 
-/// Bytes of memory that [`space`] needs for a profile.
+/// Bytes of memory that [`space`] needs for a profile; 0 if the profile is too long, because it is then ignored.
 pub fn working_bytes(bytes: &[u8]) -> usize {
     if bytes.len() > MAX_BYTES { 0 } else { memory::profile(bytes.len(), has_tables(bytes)) }
 }
@@ -119,7 +119,8 @@ fn shares_little(bytes: &[u8]) -> bool {
     bytes.len() > HEADER_BYTES && total <= (MAX_SHARING * bytes.len()) as u64
 }
 
-/// Returns the space of a profile that states PQ or HLG; `None` for other profiles.
+/// Returns the space of a profile that states the transfer function PQ or HLG; `None` for other profiles, and if the
+/// primaries are unknown.
 fn hdr(codes: &CicpProfile) -> Result<Option<Space>> {
     let transfer = codes.transfer_characteristics as u8;
     if !matches!(transfer, cicp::PQ | cicp::HLG) {
@@ -159,8 +160,8 @@ fn function(trc: &ToneReprCurve) -> Option<impl Fn(f64) -> f64 + use<>> {
     Some(move |code| f64::from(evaluator.evaluate_value(code as f32)))
 }
 
-/// Returns the rendering intent whose tables are used: relative colorimetric if it has tables, else the first other
-/// intent that has tables.
+/// Returns the rendering intent whose tables are used: relative colorimetric if it has tables, else perceptual, else
+/// saturation. `None` if no intent has tables.
 fn intent(profile: &ColorProfile) -> Option<RenderingIntent> {
     let has = |tables: &Option<_>, intent| tables.is_some().then_some(intent);
     has(&profile.lut_a_to_b_colorimetric, RenderingIntent::RelativeColorimetric)

@@ -59,8 +59,8 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     }
 }
 
-/// Maps an 8-bit or 16-bit code of video range to `[0, 1]`: the black of that range to 0 and its white to 1
-/// (Recommendation ITU-T H.273, 8.3).
+/// Maps a code of video range so that the black of that range becomes 0 and its white 1 (Recommendation ITU-T H.273,
+/// 8.3). `code` is a share of the highest 8-bit or 16-bit code. Codes below black become 0.
 fn narrow(code: f64, bits: u8) -> f64 {
     let max = f64::from(if bits == 16 { u16::MAX } else { 255 });
     let unit = (max + 1.0) / 256.0;
@@ -78,7 +78,8 @@ fn chromaticities(chunk: &[u8]) -> Option<Chromaticities> {
     Some(Chromaticities { white: point(0)?, primaries: [point(1)?, point(2)?, point(3)?] })
 }
 
-/// Returns the space with this exponent and these chromaticities. A missing value is taken from sRGB.
+/// Returns the space with this exponent and these chromaticities. A missing value is taken from sRGB. The space is
+/// unusable if the primaries are collinear.
 fn by_numbers(exponent: Option<f64>, chromaticities: Option<Chromaticities>) -> Result<Space> {
     let Some(matrix) = chromaticities.unwrap_or(Chromaticities::REC709).to_rec709() else { return Ok(Space::Unusable) };
     let curve = match exponent {
