@@ -220,7 +220,7 @@ impl Search<'_> {
             let len = self.candidates.len();
             self.try_sibling_of(gained, first);
             self.try_sibling_of(gained, first + 1);
-            // Visit the more promising of the two children next.
+            // Put the pair with the larger possible gain on top, so that it is examined next.
             if let [.., a, b] = &mut self.candidates[len..]
                 && a.0 > b.0
             {

@@ -40,7 +40,7 @@ impl Canvas {
         Ok(canvas)
     }
 
-    /// Creates woven canvas.
+    /// Creates canvas whose weave shows in the surface texture and in the relief.
     pub fn linen(width: usize, height: usize, colour: Vec3, seed: u64) -> Result<Self> {
         let mut canvas = Self::paper(width, height, colour, seed)?;
         for i in 0..width * height {
@@ -61,7 +61,8 @@ impl Canvas {
         });
     }
 
-    /// Paints a round dab of thick paint.
+    /// Paints a round dab. `radius` is in pixels. Where the paint covers the canvas, the relief gets the value
+    /// `thickness`.
     pub fn touch(&mut self, at: Vec2, radius: f32, colour: Vec3, opacity: f32, thickness: f32) {
         self.deposit(at, radius, |canvas, i, cover| {
             // At high opacity the paint covers everything, like a loaded brush. At low opacity it covers only places

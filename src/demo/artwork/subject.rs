@@ -26,7 +26,7 @@ pub struct Appearance {
     pub is_object: bool,
     /// Unit direction in the picture (y down) of strokes that follow the form.
     pub along: Vec2,
-    /// Strength of the edge of a shape at this pixel.
+    /// Strength of the edge of a shape at this pixel: 1 on an edge, 0 away from edges.
     pub edge: f32,
 }
 

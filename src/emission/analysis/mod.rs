@@ -25,8 +25,8 @@ use sites::Sites;
 /// magnifies at most this many times as much as the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
 /// Limits for shifts that are proposed as periods. `MIN_CORRELATION`: minimum autocorrelation of the lights at the
-/// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of this value to its highest value over all shifts. `MAX_SHIFTS`:
-/// maximum number of shifts. [judged on 20 photos]
+/// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of the autocorrelation at the shift to the highest one at any
+/// shift, less an allowance for chance. `MAX_SHIFTS`: maximum number of shifts. [judged on 20 photos]
 const MIN_CORRELATION: f32 = 0.35;
 const MIN_RELATIVE_CORRELATION: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
@@ -57,7 +57,7 @@ pub struct Choice {
 }
 
 impl Choice {
-    /// The score minus the score of the runner-up.
+    /// How clearly the law was chosen: the score minus the score of the runner-up. NaN if `score` is NaN.
     pub fn margin(&self) -> f64 {
         self.score - self.runner_up_score
     }
@@ -251,7 +251,8 @@ impl Analysis {
             }
             job.check()?;
         }
-        // The distances between neighbouring panes, or the steps between lamps, give periods along the axes.
+        // Find periods along the axes: on a luminous ceiling from the distances between neighbouring panes, otherwise
+        // from the steps between lamps.
         let periods = match exemplar.is_luminous_ceiling() {
             true => neighbours::periods(&evidence.whole),
             false => steps::periods(&[&evidence.whole[..], &evidence.completed].concat()),

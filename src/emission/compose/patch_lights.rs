@@ -20,14 +20,14 @@ use crate::job::Job;
 use glam::{DVec2, DVec3, Vec3};
 
 /// `BAND`: number of rows of texels in a band. `MARGIN_ROWS`: number of further rows that are rendered above and below
-/// the band. The lit part of a texel depends on the texels around it.
+/// the band, because the lit part of a texel depends on the texels around it.
 const BAND: usize = 64;
 const MARGIN_ROWS: usize = 2;
 /// Value of a texel without light, in place of the index of its light.
 const NONE: u32 = u32::MAX;
 
-/// Finds all lights of a composition that are copied patch by patch, in the order of their first texel. The field
-/// `flux_share` is left at 0.
+/// Finds all lights of a composition that are copied patch by patch, in the order of their first texel. Leaves out
+/// crumbs. The field `flux_share` is left at 0.
 pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job) -> Result<Vec<Luminaire>> {
     if !composition.layers.iter().any(|layer| layer.follows_patches()) {
         return Ok(Vec::new());

@@ -14,7 +14,7 @@ use glam::{DVec2, UVec2};
 pub enum TexelZone {
     /// Light is allowed.
     Open,
-    /// The texel is not visible: light there is removed.
+    /// The surface does not cover the texel: light there is removed.
     Hidden,
     /// No lamp may be here: a lamp that covers the texel is removed as a whole.
     KeepOut,
@@ -23,8 +23,8 @@ pub enum TexelZone {
 impl TexelZone {
     /// Finds the zone of each texel of a texture of `size` texels. `covered` tells for each texel whether the surface
     /// covers it, and `in_zone` whether a point, in texels, lies in a zone without lamps. `margin` is the minimum
-    /// distance, in texels, of lamps from these zones and from the surface's edge; with `None`, lamps may cross the
-    /// edge.
+    /// distance, in texels, of lamps from these zones, from the edge of the surface and from the border of the texture.
+    /// With `None`, lamps may cross the edge and the border.
     pub fn mark(
         size: UVec2,
         covered: &[bool],

@@ -40,7 +40,7 @@ pub struct Exemplar {
     /// Whether the photo shows each pixel: the pixel is finite, on the plane, and not magnified beyond the limit.
     pub shown: Vec<bool>,
     pub components: Components,
-    /// The role of each component.
+    /// The role of each component, in the order of `components.list`.
     pub roles: Vec<Role>,
     /// Number of photo pixels that show each component.
     pub photo_area: Vec<f64>,

@@ -24,7 +24,7 @@ const MIN_SHARE: f64 = 0.3;
 /// through rounding. [origin not recorded]
 const MAX_LATTICE_OVERLAP: f64 = 0.2;
 
-/// Rules for placing lamps.
+/// How lamps are placed in a texture.
 #[derive(Clone, Copy)]
 pub struct Rules {
     /// Whether the lamps lie on a lattice, where only rounding can make them overlap.

@@ -128,7 +128,7 @@ fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) ->
     periods
 }
 
-/// Whether two shifts are nearly parallel.
+/// Whether two shifts count as parallel ([`MAX_PARALLEL_SINE`]).
 pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
     a.normalize().perp_dot(b.normalize()).abs() < MAX_PARALLEL_SINE
 }

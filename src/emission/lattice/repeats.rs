@@ -12,8 +12,8 @@ const STANDARD_ERRORS: f32 = 2.0;
 const MIN_UNCHANGING: f32 = 0.95;
 
 /// A peak counts only if the correlation falls by at least `MIN_FALL.1` within `MIN_FALL.0` pixels on both sides of it.
-/// Both sides lie along x or y, whichever is closer to the direction of the shift. If the correlation does not fall,
-/// the lights run along this axis without interruption and have no period along it. [origin not recorded]
+/// The fall is measured along x or along y, whichever is closer to the direction of the shift. If the correlation does
+/// not fall, the lights run along this axis without interruption and have no period along it. [origin not recorded]
 const MIN_FALL: (isize, f32) = (8, 0.02);
 
 /// A shift that moves lights onto lights, found as a peak of the autocorrelation.
