@@ -160,9 +160,9 @@ impl Choice<'_> {
             wide.root = Child::of_packet(wide.lines.push(&self.packet(&self.triangles(root)))?);
             return Ok(wide);
         }
-        // Fill each page of memory with the nodes most likely to be visited together: start with one node, then
-        // repeatedly add the node of largest area among the children of nodes in the page. Children that do not fit
-        // start new pages.
+        // Fill each page of memory with nodes that a ray is likely to visit together. Start with one node. Of the
+        // children of nodes in the page, repeatedly add the one of largest area. Children that do not fit start new
+        // pages.
         let mut roots = vec![Open { place: root, area: 0.0, parent: None, stack_depth: 0 }];
         let mut open = Vec::new();
         while let Some(next) = roots.pop() {

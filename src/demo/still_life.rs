@@ -1,8 +1,8 @@
-//! The two scenes of a stylisation: the exemplar, a sphere on a table as an artist paints it (StyLit, section 3.1),
-//! and the target, a still life of other shapes on the same table under the same lamp.
+//! The two scenes of a stylisation. The exemplar is a sphere on a table as an artist paints it (StyLit, section 3.1).
+//! The target is a still life of other shapes on the same table under the same lamp.
 //!
-//! Both scenes show the effects of light that artists paint differently: a highlight, a core shadow, the red light
-//! that the object reflects onto the table, and the object's cast shadow with a soft edge.
+//! Both scenes show the effects of light that artists paint differently: a highlight, a core shadow, the red light that
+//! the object reflects onto the table, and the object's cast shadow with a soft edge.
 
 use super::Builder;
 use super::shapes::{ball, lathe, mesh_of, moved, sheet};

@@ -100,8 +100,8 @@ fn normal(x: f64, deviation: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// The estimate keeps a part of the prior's error, because several usual sizes have equal proportions: a lamp of
-    /// 1.2 m x 0.6 m at 2.2 m looks like a lamp of 0.6 m x 0.3 m at 1.1 m.
+    /// The estimate keeps a part of the prior's error, because several usual sizes have equal proportions. For example,
+    /// a lamp of 1.2 m x 0.6 m at 2.2 m looks like a lamp of 0.6 m x 0.3 m at 1.1 m.
     #[test]
     fn a_usual_lamp_tells_the_distance() {
         for (long, short) in [(0.6, 0.6), (1.2, 0.6), (1.2, 0.3)] {

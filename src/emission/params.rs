@@ -50,7 +50,7 @@ pub struct Params {
     pub height: usize,
     /// Unwarped pixels per texel, in [`SCALES`].
     pub scale: f64,
-    /// Side of a patch in pixels of the working size (see `working_side`), in `[0, 65536]`; 0 chooses it from the
+    /// Side of a patch in pixels of the working size (see `working_side`), in `[0, 65536]`. 0 chooses it from the
     /// period of the lights or, without a lattice, from the size of the exemplar.
     pub block: usize,
     /// Number of random patches that are compared for each block of the texture, besides the patches that continue

@@ -21,8 +21,8 @@ use evidence::Evidence;
 use glam::DVec2;
 use sites::Sites;
 
-/// For each of these values, lattices and rows are also proposed from a part of the exemplar: the part that unwarping
-/// magnifies at most this many times as much as the least magnified pixel. [judged on 20 photos]
+/// Lattices and rows are also proposed from the sharper parts of the exemplar, one part for each of these values.
+/// Unwarping magnifies such a part at most this many times as much as the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
 /// Limits for shifts that are proposed as periods. `MIN_CORRELATION`: minimum autocorrelation of the lights at the
 /// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of the autocorrelation at the shift to the highest one at any
@@ -198,8 +198,8 @@ impl Analysis {
         let best = proposals.iter().fold(own, |best, p| if rank(p) > rank(&best) + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // For the panes of a luminous ceiling, prefer the best lattice, provided that it scores clearly higher than a
-        // law without a period, and that no other law scores clearly higher than the lattice.
+        // For the panes of a luminous ceiling, prefer the best lattice if two conditions hold. It scores clearly higher
+        // than a law without a period, and no other law scores clearly higher than the lattice.
         let panes = lattice.filter(|p| {
             exemplar.is_luminous_ceiling()
                 && p.score > SCORE_WITHOUT_PERIOD + CLEAR_MARGIN

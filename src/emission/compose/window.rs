@@ -15,9 +15,9 @@ pub struct Window {
 }
 
 impl Window {
-    /// Finds the part of the exemplar to copy: of all parts with the size of the texture that the photo shows
-    /// completely, the part whose lit share is closest to the lit share of the exemplar. The part is then moved by the
-    /// negative of `params.offset`. `None` if the photo shows no part of this size completely.
+    /// Finds the part of the exemplar to copy. Candidates are all parts with the size of the texture that the photo
+    /// shows completely. The part is chosen whose lit share is closest to the lit share of the exemplar. It is then
+    /// moved by the negative of `params.offset`. `None` if the photo shows no part of this size completely.
     pub fn find(exemplar: &Exemplar, params: &Params) -> Result<Option<Self>> {
         let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
         let (w, h) = (side(params.width), side(params.height));

@@ -44,8 +44,8 @@ const MIN_COMMON_DIRECTION: f64 = 0.93;
 /// compared with the shape that has the lamp's own sides. Agreement is the area of their intersection divided by the
 /// area of their union. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// Blur rounds the corners of a rectangle, so its sides are measured away from the corners: the length as a mean over
-/// the middle part of the width, and the width as a mean over the middle part of the length. The middle part has this
+/// Blur rounds the corners of a rectangle, so its sides are measured away from the corners. The length is a mean over
+/// the middle part of the width, and the width is a mean over the middle part of the length. The middle part has this
 /// share of the whole. [judged on 20 photos]
 const MIDDLE_SHARE: f64 = 0.6;
 /// Lamps count as aligned with the axes of the unwarped photo if their angle to an axis is at most this, in radians.
@@ -454,8 +454,8 @@ impl Design {
                 };
                 along(q.x, half.x) * along(q.y, half.y)
             }
-            // To first order, the signed distance to an ellipse with half-axes a and b is f divided by the length of
-            // its gradient, where f = |(x / a, y / b)| - 1.
+            // Let f = |(x / a, y / b)| - 1 for an ellipse with half-axes a and b. To first order, the signed distance
+            // to the ellipse is f divided by the length of its gradient.
             Shape::Ellipse => {
                 let u = q / half;
                 let r = u.length();

@@ -27,8 +27,8 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
-/// The period, along x and along y, with which all panes of a luminous ceiling repeat, in unwarped pixels: the length
-/// of the box around all panes, plus the width of the widest bar between panes.
+/// The period, along x and along y, with which all panes of a luminous ceiling repeat, in unwarped pixels. It is the
+/// length of the box around all panes, plus the width of the widest bar between panes.
 pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
     let panes = || exemplar.components.list.iter();
     let [[width, column], [height, row]] = [spread(panes(), 0, usize::max), spread(panes(), 1, usize::max)];
@@ -54,10 +54,14 @@ fn spread<'a>(lamps: impl Iterator<Item = &'a Component>, axis: usize, choose: f
     [(end - first) as f64, gap.unwrap_or(0) as f64]
 }
 
-/// The period, along x and along y, with which an exemplar that shows rows of lamps repeats, in unwarped pixels. Along
-/// each axis, it is the larger of two lengths: the exemplar's extent, and the length of the box around all lamps plus
-/// the shortest gap between lamps, if there is a gap. Without the second length, two rows at opposite borders of the
-/// exemplar would lie side by side in the texture, almost without a gap.
+/// The period, along x and along y, with which an exemplar repeats if it shows rows of lamps, in unwarped pixels. Along
+/// each axis, it is the larger of two lengths:
+///
+/// - the extent of the exemplar, and
+/// - the length of the box around all lamps plus the shortest gap between lamps, if there is a gap.
+///
+/// Without the second length, two rows at opposite borders of the exemplar would lie side by side in the texture,
+/// almost without a gap.
 pub fn of_rows(exemplar: &Exemplar) -> DVec2 {
     let spaced = |axis: usize| {
         let [length, gap] = spread(exemplar.components.list.iter(), axis, usize::min);
