@@ -116,8 +116,8 @@ pub fn restrict(input: &Input, classified: &mut Classified) -> Result<()> {
     Ok(())
 }
 
-/// The signed distance of a face from the camera: the mean of `position · normal` over the pixels with this normal. It
-/// is negative, because the normal points into the room.
+/// The signed distance of a face from the camera: the mean of `position · normal` over the pixels whose own normals are
+/// within 45 degrees of `normal`; 0 if there are none. It is negative, because `normal` points into the room.
 pub fn offset(features: &Image, normal: Vec3) -> f32 {
     let pixels = features.data.chunks_exact(features.channels);
     let on_face = pixels.filter(|pixel| Vec3::from_slice(&pixel[NORMAL..]).dot(normal) >= SAME_FACE);

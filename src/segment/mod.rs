@@ -133,7 +133,6 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let (learnt, blank) = exec::both(|| learn(input, params, &subsets, &channels, job.part(0.0, 0.4)), blank);
     let ((samples, chosen), blank) = (learnt?, blank?);
 
-    // Classify every pixel.
     let done = if params.refine_radius > 0 { 0.5 } else { 1.0 };
     let mut classified = classify::run(features, input.region, &channels, &chosen, blank, job.part(0.4, done))?;
     if classified.bad > 0 {

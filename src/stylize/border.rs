@@ -154,8 +154,8 @@ mod tests {
     use super::*;
     use crate::job::Monitor;
 
-    /// Along a straight border, the share r that remains from pixel to pixel satisfies
-    /// 4 / DIFFUSION_FACTOR = 2 + r + 1 / r.
+    /// After many diffusion steps, a difference at a straight border falls by a factor r from each pixel to the next,
+    /// where 4 / DIFFUSION_FACTOR = 2 + r + 1 / r.
     #[test]
     fn a_step_fades_out_from_a_straight_border() {
         let mut step = Image::from_fn(40, 9, |x, _| [f32::from(x < 10)]).unwrap();

@@ -2,9 +2,9 @@
 //!
 //! The sorted matching errors follow a hyperbola `f(x) = 1 / (a - b x)` when both axes are scaled to `[0, 1]`. (Errors
 //! are scaled by their 99th percentile: the largest of a million errors is an outlier that would move the knee.) The
-//! knee, where `f′ = 1`, separates feasible matches from matches that force a patch into an unsuitable position. Since
-//! `f′ = b f²`, the knee satisfies `a - b x = √b`: `k = a/b - √(1/b)`. The paper prints a plus sign, which puts the
-//! knee beyond the pole at `a/b`.
+//! knee k, where `f′(k) = 1`, separates feasible matches from matches that force a patch into an unsuitable position.
+//! Since `f′ = b f²`, the knee satisfies `a - b k = √b`, so `k = a/b - √(1/b)`. The paper prints a plus sign, which
+//! puts the knee beyond the pole at `a/b`.
 //!
 //! If no hyperbola fits, the knee is the point farthest below the diagonal. An example is a curve with a step, which
 //! arises if most exemplar patches have no suitable place (Fig. 7). A curve that never runs below the diagonal has no

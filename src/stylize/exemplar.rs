@@ -26,13 +26,14 @@ const EQUAL: f32 = 0.03;
 /// A block counts as elsewhere if it is more than this number of columns or rows of blocks away. A defect of a block
 /// may extend over nearer blocks.
 const NEAR: usize = 3;
-/// A block is compared only if at least this many blocks elsewhere have equal (or similar) guides.
+/// Minimum number of blocks elsewhere with which a block is compared: blocks of equal guides for
+/// [`Compared::spread`], blocks of similar guides for [`Compared::own`].
 const MIN_OTHERS: usize = 16;
 /// Minimum grain, in units of the display encoding (white = 1). Flat paint has less grain and would make any
 /// difference look large. [bench stylit:doubts]
 const MIN_GRAIN: f32 = 0.015;
-/// A light counts as painted in two ways if the upper quartile in [`Compared::spread`] is above this, in grains.
-/// [bench stylit:doubts]
+/// The light of a block counts as painted in two ways if the upper quartile in [`Compared::spread`] is above this, in
+/// grains. [bench stylit:doubts]
 const TWO_PAINTS: f32 = 4.0;
 
 /// Defects of the exemplar, with their places in pixels.
@@ -68,7 +69,7 @@ struct Compared {
     /// the differences of their paint from this median paint. `None` if there are too few of these blocks.
     spread: Option<[f32; 2]>,
     /// 5 % quantile of the differences between the block's paint and the paint of the blocks elsewhere with similar
-    /// guides. It is large only if hardly any of these blocks has similar paint.
+    /// guides. It is large only if hardly any of these blocks has similar paint. 0 if there are too few of them.
     own: f32,
 }
 

@@ -18,8 +18,8 @@ const SAMPLES: usize = 128;
 const STEPS: f32 = 32.0;
 /// Maximum number of different guides of the exemplar that are compared.
 const MAX_CODES: usize = 2048;
-/// Side, in samples, of the blocks into which the target is divided; the block with the most lacking samples gives the
-/// place of the warning.
+/// Side, in samples, of the blocks into which the target is divided. The block with the most samples whose light the
+/// exemplar lacks gives the place of the warning.
 const BLOCK: usize = 8;
 
 /// The part of the target whose light the exemplar lacks.

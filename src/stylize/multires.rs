@@ -198,9 +198,9 @@ fn rematch(
     job: Job,
 ) -> Result<Option<Vec<PassReport>>> {
     let State { field, picture, kept, .. } = state;
-    // The distance of a match changes only if the patch contains a changed pixel, so rematch only these patches. The
-    // first iteration of `Params::polish` is an exception: it rematches all patches, because they were assigned under
-    // the budget.
+    // The distance of a match changes only if the target patch contains a changed pixel, so rematch only these patches.
+    // Two iterations rematch all patches: the first one, and the first one of `Params::polish`, because until then the
+    // patches were assigned under the budget and not to their nearest exemplar patches.
     let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
     let rematches_all = k == 0 || polishes && k == params.finest_iterations;
     let mut changed = if rematches_all {

@@ -10,12 +10,13 @@ use glam::Vec3;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 /// The part of a face of the room that each pixel shows. Lengths have the unit of the positions in the features. The
-/// face is extended beyond its edges: a pixel that shows another face counts with the part of the extension that its
-/// ray meets.
+/// face is extended beyond its edges. If a pixel shows another face, its part is where its ray would meet the extended
+/// face.
 pub struct Footprint {
     /// Area that each pixel shows; infinite where the pixel's ray does not meet the face.
     pub area: Vec<f32>,
-    /// Coordinates of each pixel on the face, along two room axes.
+    /// Coordinates of each pixel on the face, along two room axes; infinite where the pixel's ray does not meet the
+    /// face.
     pub at: Vec<[f32; 2]>,
     /// Whether a pixel shows the face itself: its normal deviates by less than 45 degrees from the face's normal.
     pub is_on_face: Vec<bool>,

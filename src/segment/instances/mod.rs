@@ -90,7 +90,8 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let photo = Brightness::new(input.features, white(input.features, examples)?, job.part(0.0, 0.2))?;
     let floor = floor(&photo, examples);
     let tree = Tree::new(&photo.levels, floor, width, job.part(0.2, 0.6))?;
-    // If the room was laid out as a box, measure the regions on the face that holds the lamps, too.
+    // If the room was laid out as a box, measure the regions not only in pixels, but also on the face that holds the
+    // lamps.
     let normal = match unpainted {
         Some(plane) => face::laid_out_under(input.features, plane),
         None => face::laid_out(input),

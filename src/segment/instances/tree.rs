@@ -1,6 +1,6 @@
-//! The component tree of a photo's brightness (Salembier et al. 1998), built by union-find (Berger et al. 2007). Its
-//! nodes are, for each brightness level, the connected regions of pixels at or above that level. The parent of a
-//! region is the region that contains it at the next lower level.
+//! The component tree of a photo's brightness (Salembier et al. 1998), built by union-find (Berger et al. 2007). A node
+//! of the tree is a connected region of all pixels at or above some brightness level. The parent of a region is the
+//! smallest larger region that contains it; the parent's level is lower.
 //!
 //! Nodes are numbered from the root, parents before children. The root is the whole image.
 
