@@ -35,8 +35,8 @@ const MAX_CHANGE: f32 = 0.02;
 /// The matches of the previous frame, advected into this frame.
 pub(super) struct Moved {
     pub field: Field,
-    /// The patch of the previous frame from which each match comes. [`NONE`] if the match must not be kept, because
-    /// the patch is astride a silhouette or was not visible.
+    /// The patch of the previous frame from which each match comes. [`NONE`] if the match must not be kept: the target
+    /// patch is astride a silhouette, or its centre was not visible in the previous frame.
     pub from: Vec<u32>,
 }
 

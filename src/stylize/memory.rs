@@ -79,8 +79,8 @@ impl Memory {
     }
 
     /// Follows the motion of each pixel into the previous frame, and compares the data of the pixel with the data
-    /// there. The data are compared with all pixels within one pixel of the end of the motion; the smallest difference
-    /// is the error of the pixel.
+    /// there. All pixels within one pixel of the end of the motion are tried; the smallest difference is the error of
+    /// the pixel. Compares nothing if there are no guides of data, or if `motion` has another size.
     pub(super) fn agreement(&self, before: &Self, motion: &Image, job: Job) -> Result<Comparison> {
         let [width, height] = self.size;
         let channels = self.data.len().checked_div(width * height).unwrap_or(0);

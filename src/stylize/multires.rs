@@ -55,7 +55,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     // A run that continues the matches of a previous result needs only the finest level. A frame of a sequence needs
     // all levels: on the finest level alone, uncovered places and changed light would get the paint around them.
     let continues = input.previous.is_some() && moved.is_none();
-    // Build the pyramid; the coarsest level is at least five patches wide.
+    // Build the pyramid. Each level below full resolution is at least five patches wide along its shortest side.
     let levels = match params.mode {
         Mode::LitSphere => 1,
         _ if continues => 1,
@@ -199,8 +199,8 @@ fn rematch(
 ) -> Result<Option<Vec<PassReport>>> {
     let State { field, picture, kept, .. } = state;
     // The distance of a match changes only if the target patch contains a changed pixel, so rematch only these patches.
-    // Two iterations rematch all patches: the first one, and the first one of `Params::polish`, because until then the
-    // patches were assigned under the budget and not to their nearest exemplar patches.
+    // Two iterations rematch all patches: the first one, for which no distances are valid yet, and the first one of
+    // `Params::polish`. Before it, the patches were assigned under the budget, not to their nearest exemplar patches.
     let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
     let rematches_all = k == 0 || polishes && k == params.finest_iterations;
     let mut changed = if rematches_all {

@@ -88,7 +88,7 @@ pub struct Params {
     /// paint is placed, and colours determine how it continues. The paper uses 1. \[bench stylit:knobs\]
     pub coarse_guides: f32,
     /// Maximum number of pyramid levels, in `[1, 16]`; each has half the resolution of the next finer one. There are
-    /// fewer levels if the coarsest would be smaller than 5 patches. \[paper §3.4\]
+    /// fewer levels if the shortest side of the coarsest would be less than 5 patch widths. \[paper §3.4\]
     pub levels: usize,
     /// EM iterations (matching, then voting) on the second finest level, in `[1, 100]`. \[paper §3.4\]
     pub iterations: usize,

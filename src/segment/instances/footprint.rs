@@ -28,7 +28,8 @@ const MIN_SINE: f32 = 1e-3;
 impl Footprint {
     /// Computes the footprints of all pixels on a face with the given normal and signed distance from the camera
     /// (`face::offset`). The area of a pixel is the length of the cross product of the position differences along its
-    /// row and its column. The coordinates run along the two room axes that are farthest from the normal.
+    /// row and its column. The coordinates run along two of the three room axes, without the axis nearest to the
+    /// normal.
     pub fn new(features: &Image, (normal, offset): (Vec3, f32), job: Job) -> Result<Self> {
         let (width, height) = (features.width, features.height);
         // The point where the ray through a pixel meets the face or its extension.

@@ -45,7 +45,7 @@ use tree::Tree;
 /// Share of the stroke pixels, the darkest ones, that is ignored when the least brightness of the lamps is determined:
 /// hurried strokes run over the edges of lamps. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
-/// Quantile of L* under the strokes that is taken for white. [judged on 44 photos]
+/// This quantile of L*, over the pixels under the positive strokes, is taken for white. [judged on 44 photos]
 const WHITE: f64 = 0.9;
 /// Lower bound of the L* that is taken for white; it corresponds to a luminance of 1e-5. Darker strokes lie on black
 /// and mark no lamp. [convention]
@@ -61,7 +61,8 @@ const MIN_CONTRAST: f64 = 3.0;
 const ERRORS: [f64; 2] = [0.03, 0.1];
 
 /// Finds the lamps under the positive strokes, and regions that look like them. Without positive strokes, proposes
-/// lamps ([`proposed`]). The first three channels of the features are CIELAB.
+/// lamps ([`proposed`]); this needs a region and features of [`CHANNELS`] channels, otherwise the error is
+/// `Degenerate`. The first three channels of the features are CIELAB.
 pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let (width, height) = (input.features.width, input.features.height);
     let paint = samples::ownership(input)?;
@@ -135,7 +136,8 @@ fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
     Ok(kept)
 }
 
-/// A high quantile of L* under the strokes. Unlike the maximum, it does not depend on a few highlights.
+/// The L* that is taken for white: a high quantile of L* over the pixels of `examples`, which lie on lamps. Unlike the
+/// maximum, it does not depend on a few highlights.
 fn white(features: &Image, examples: &[Vec<u32>]) -> Result<f32> {
     let pixels = examples.iter().flatten();
     let mut lightness = try_collect(pixels.map(|&p| features.data[p as usize * features.channels]))?;

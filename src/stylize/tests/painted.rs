@@ -66,8 +66,8 @@ fn light_that_the_painted_part_lacks_uses_no_patch_too_often_and_is_named_with_i
     let error = &output.report.guide_error;
     assert!(error.pixel(90, 72)[0] > 0.3 && error.pixel(90, 24)[0] < 0.1);
 
-    // A preview compresses the six channels to a few components. It must still report the lamp's light as lacking. Data
-    // channels must not count as light: the right half repeats the data of the left half.
+    // A preview compresses the six channels to a few components. It must still report the light of the lamp as lacking
+    // in the same share of the pixels. The data channels add nothing to this share.
     let data = Image::from_fn(120, 96, |x, _| std::array::from_fn::<f32, 5, _>(|c| (x * (c + 1) % 60) as f32 / 60.0));
     let data = data.unwrap();
     let guides = [Guide { name: "data", range: Range::Data, ..guide(&data, &data) }, guide(&scene, &scene)];
