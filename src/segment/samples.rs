@@ -12,8 +12,8 @@ use crate::rng;
 #[derive(Clone, Copy)]
 pub struct Origin {
     pub positive: bool,
-    /// Index of the sample's stroke. The negative strokes are numbered first, then the positive ones; strokes without a
-    /// pixel of their own are left out.
+    /// Index of the sample's stroke. The negative strokes are numbered first, then the positive ones; strokes from
+    /// which no sample is drawn are left out.
     pub stroke: usize,
     /// The quarter of the stroke that holds the sample, 0 to 3, counted along x if the stroke is wider than high, else
     /// along y.

@@ -63,8 +63,8 @@ pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
 }
 
 /// Returns column and row of each saddle of brightness in an image that was blurred by `sigma`. A saddle is a local
-/// maximum, above [`MIN_RESPONSE`], of the response σ⁴ (Ixy² - Ixx Iyy). The response is the negated determinant of the
-/// Hessian, normalised for scale.
+/// maximum of at least [`MIN_RESPONSE`] of the response σ⁴ (Ixy² - Ixx Iyy). The response is the negated determinant of
+/// the Hessian, normalised for scale.
 fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     let (width, height) = (image.width, image.height);
     let mut response = Image::new(width, height, 1)?;

@@ -77,9 +77,9 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Moved> {
 /// The memories of the previous frame and of this frame.
 pub(super) type Memories<'a> = Option<(&'a Memory, &'a Memory)>;
 
-/// Computes the distances of the advected matches, and returns which target patches keep their match: the patches
-/// whose error lies left of the knee of the sorted errors, whose light has hardly changed, and which are not astride a
-/// silhouette. Blocks that [`Params::coherence`] chooses for new matches keep nothing.
+/// Computes the distances of the advected matches, and returns which target patches keep their match: the patches whose
+/// error lies left of the knee of the sorted errors, whose light has hardly changed (if `memories` are given), and
+/// which are not astride a silhouette. Blocks that [`Params::coherence`] chooses for new matches keep nothing.
 pub(super) fn keep(
     level: &mut Level,
     moved: &mut Moved,

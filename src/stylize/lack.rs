@@ -43,7 +43,7 @@ pub(super) struct LightSamples {
 }
 
 impl LightSamples {
-    /// Takes the samples; `None` if all guides are data.
+    /// Takes the samples; `None` if no guide of light has a weight above 0.
     pub fn of(guides: &Channels, source_mask: Option<&[bool]>) -> Result<Option<Self>> {
         let Some(codes) = codes(guides, source_mask)? else { return Ok(None) };
         let target = &guides.target;
@@ -105,7 +105,8 @@ struct Codes {
     weights: Vec<f64>,
 }
 
-/// Collects the distinct values of the exemplar's guides of light; `None` if all guides are data.
+/// Collects the distinct values of the exemplar's guides of light, inside the mask; `None` if no guide of light has a
+/// weight above 0.
 fn codes(guides: &Channels, source_mask: Option<&[bool]>) -> Result<Option<Codes>> {
     let source = &guides.source;
     let of_light = || guides.weights.iter().zip(&guides.is_light).map(|(w, &is_light)| if is_light { *w } else { 0.0 });

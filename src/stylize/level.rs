@@ -29,7 +29,7 @@ pub(super) struct Problem {
     pub broken: (usize, usize),
     /// The target's guides for the next frame of a sequence; `None` on coarse levels.
     pub memory: Option<Memory>,
-    /// Samples of the guides of light; `None` on coarse levels, and if all guides are data.
+    /// Samples of the guides of light; `None` on coarse levels, and if no guide of light has a weight above 0.
     pub light: Option<LightSamples>,
 }
 

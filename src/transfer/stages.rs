@@ -108,8 +108,8 @@ impl Transfer {
         Ok(true)
     }
 
-    /// If lamps lie beyond the plane of the room's layout, enlarges the room, and finds the plane and the lights again
-    /// in the larger room.
+    /// If lamps lie beyond the plane of the room's layout, and a larger room that contains them is plausible, enlarges
+    /// the room. Then finds the plane and the lights again in the larger room.
     fn enlarge_room(&mut self, job: Job) -> Result<()> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), lights: Some(lights), .. } =
             &self.results
