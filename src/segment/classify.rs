@@ -145,7 +145,7 @@ impl QuadraticForm {
         let mut sum = [self.c; TILE];
         let mut rest = self.a.as_slice();
         for (i, (x, &b)) in planes.iter().zip(&self.b).enumerate() {
-            // x_i (b_i + Σ_{j >= i} a_ij x_j)
+            // Add the terms of x_i: x_i (b_i + Σ_{j >= i} a_ij x_j).
             let mut factor = [b; TILE];
             if !rest.is_empty() {
                 let (row, after) = rest.split_at(planes.len() - i);

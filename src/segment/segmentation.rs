@@ -4,7 +4,7 @@ use super::strokes::Stroke;
 use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 
-/// The two families of classifiers: the logit is a linear or a quadratic function of the features.
+/// The two kinds of classifiers: the logit is a linear or a quadratic function of the features x.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Model {
     /// The logit is `bᵀx + c`.

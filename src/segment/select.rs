@@ -73,7 +73,7 @@ pub struct SelectionInput<'a> {
     pub ridge: f64,
 }
 
-/// A candidate classifier: a family of models on a subset of the features.
+/// A candidate classifier: the linear or the quadratic model on a subset of the features.
 struct Candidate {
     model: Model,
     columns: Vec<usize>,

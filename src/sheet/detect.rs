@@ -12,7 +12,7 @@ const MAX_SIDE: usize = 1400;
 /// Standard deviations of the blur before the search, in pixels of the reduced image. These scales find marks of four
 /// to about forty pixels across. [convention: a scale space in octaves]
 const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
-/// Maximum number of candidates.
+/// Maximum number of candidates for marks; the strongest ones are kept.
 const MAX_CANDIDATES: usize = 24;
 /// Minimum share of the second harmonic (two periods per turn) in the variance of brightness along a circle around a
 /// mark. An ideal mark gives two periods of a square wave, with a share of 8 / π² = 0.81. [origin not recorded]

@@ -98,8 +98,8 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
         even_light(&mut image, photo, &page, &found, width, height, job.part(0.95, 1.0))?;
     }
     // The map has 8 parameters and is fitted to the 2n coordinates of n points. In a least-squares fit, the fitted
-    // values take up the share 8 / 2n of the noise variance. The expected error of the map is therefore residual · √(8
-    // / 2n).
+    // values take up the share 8 / 2n of the noise variance. So the expected error of the map is `residual` times the
+    // root of this share.
     let scale = page.size[0] / width as f64 * found.scale;
     let error = found.residual * (8.0 / (2.0 * found.marks.len() as f64)).sqrt() / scale;
     job.report(1.0);

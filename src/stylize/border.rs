@@ -39,7 +39,7 @@ const DIFFUSION_FACTOR: f32 = 0.97;
 
 /// The border of the painted part at one pyramid level.
 pub(super) struct Border<'a> {
-    /// The level, with guides of a lower weight.
+    /// The pyramid level with the guides' weight multiplied by [`GUIDES`].
     level: Level<'a>,
     /// For each target patch, whether it contains both painted and unpainted pixels.
     is_astride: Vec<bool>,

@@ -28,7 +28,7 @@ pub struct Hyperbola {
 }
 
 impl Hyperbola {
-    /// Returns the knee; `None` unless it lies inside the data and left of the pole.
+    /// Returns the x of the knee; `None` unless the knee lies between 0 and 1, and the pole `a/b` beyond 1.
     pub fn knee(self) -> Option<f64> {
         let pole = self.a / self.b;
         let knee = pole - (1.0 / self.b).sqrt();

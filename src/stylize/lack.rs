@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 const SAMPLES: usize = 128;
 /// Number of steps to which a channel is rounded, so that equal guides are compared only once. [rounding]
 const STEPS: f32 = 32.0;
-/// Maximum number of different guides of the exemplar that are compared.
+/// Maximum number of different rounded guide values of the exemplar with which the target is compared.
 const MAX_CODES: usize = 2048;
 /// Side, in samples, of the blocks into which the target is divided. The block with the most samples whose light the
 /// exemplar lacks gives the place of the warning.

@@ -45,7 +45,7 @@ pub struct Report {
     pub unblended_share: f64,
     /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides
     /// of the exemplar pixel painted there, in `[0, 1]`. It is high where no part of the exemplar is suitable (Fig.
-    /// 17).
+    /// 17), and 0 where a pixel has no match.
     pub guide_error: Image,
     /// Two channels: for each target pixel, the position in the artwork from which its paint comes, x and y in pixels.
     /// The patch with the nearest centre determines it; -1 if that patch has no match.

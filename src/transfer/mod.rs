@@ -196,7 +196,8 @@ pub struct Transfer {
 
 impl Transfer {
     /// Runs the stages `from..=to`. The earlier results that these stages need must exist, from an earlier run or from
-    /// the caller.
+    /// the caller. If the run includes the stages Features to Lights, the lamps found may correct the view and enlarge
+    /// the room; the stages up to Lights are then repeated in part.
     ///
     /// Calls `publish` with the results whenever a stage ends, and while the picture is being rendered. After a
     /// cancellation or an error, the results contain everything that was finished.

@@ -27,11 +27,11 @@ pub struct Brightness {
     pub height: usize,
     /// CIELAB after the exposure has been scaled (see [`Self::new`]).
     pub lab: Vec<[f32; 3]>,
-    /// L* after a slight blur.
+    /// L* after the blur by [`SMOOTHING`].
     pub smooth: Image,
     /// The brightness level of each pixel: a monotone function of `smooth`.
     pub levels: Vec<u16>,
-    /// Magnitude of the gradient of L*, in L* per pixel.
+    /// Magnitude of the gradient of L* after the blur by [`GRADIENT_SMOOTHING`], in L* per pixel.
     pub gradient: Vec<f32>,
 }
 

@@ -85,7 +85,7 @@ struct Limits {
     contrast: f64,
     /// Maximum share of the region's pixels that may lie under negative strokes.
     negatives: f64,
-    /// Minimum number of pixels.
+    /// Minimum number of pixels of the region.
     pixels: f64,
 }
 

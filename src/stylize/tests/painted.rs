@@ -19,7 +19,7 @@ fn half(art: &Image, left: f32) -> Image {
     Image::from_fn(art.width, art.height, |x, _| [if 2 * x < art.width { left } else { 1.0 - left }]).unwrap()
 }
 
-/// Mean difference of the second channel between the columns `x` and `x + 1`.
+/// Mean absolute difference of the second channel between the columns `x` and `x + 1`.
 fn step(picture: &Image, x: usize) -> f32 {
     let rows = (0..picture.height).map(|y| (picture.pixel(x, y)[1] - picture.pixel(x + 1, y)[1]).abs());
     rows.sum::<f32>() / picture.height as f32
