@@ -106,7 +106,7 @@ fn stored(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * STEPS + 0.5) as u8
 }
 
-/// Returns the largest difference of a channel.
+/// Returns the largest difference of any channel between two pixels, as a share of the channel's range.
 fn difference(a: &[u8], b: &[u8]) -> f32 {
     f32::from(a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)) / STEPS
 }

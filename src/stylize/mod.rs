@@ -82,7 +82,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
     run_and_publish(input, params, &|_| (), job)
 }
 
-/// Stylises the target and publishes an intermediate result after each level.
+/// Stylises the target and publishes an intermediate result after each level except the finest.
 pub fn run_and_publish(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
     params.check()?;
     let problem = level::Problem::new(input, params, job.part(0.0, 0.03))?;

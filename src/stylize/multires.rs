@@ -310,7 +310,7 @@ fn by_guides_alone(problem: &Problem, params: &Params, seed: u64, job: Job) -> R
     Ok(field)
 }
 
-/// Checks that an external field has the size of the target, and copies it.
+/// Checks that a field that the caller supplied has the size of the target, and copies it.
 fn checked_size(field: &Field, problem: &Problem) -> Result<Field> {
     let target = &problem.guides.target;
     let (width, height) = (target.width + 1 - problem.patch, target.height + 1 - problem.patch);
@@ -324,7 +324,7 @@ fn checked_size(field: &Field, problem: &Problem) -> Result<Field> {
     field.try_clone()
 }
 
-/// Checks that the matches of an external field lie inside the exemplar.
+/// Checks that the matches of a field that the caller supplied lie inside the exemplar.
 fn checked(field: Field, level: &Level) -> Result<Field> {
     let outside = |&at: &u32| {
         let (x, y) = unpack(at);

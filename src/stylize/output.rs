@@ -11,7 +11,7 @@ pub struct Output {
     pub image: Image,
     /// The match of each target patch: the exemplar patch that it shows.
     pub field: Field,
-    /// The guides, for the next frame of a sequence.
+    /// What is remembered of the guides for the next frame of a sequence: see [`Input::memory`](super::Input::memory).
     pub memory: Memory,
     pub report: Report,
 }
