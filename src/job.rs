@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// undone.
 pub struct Monitor {
     cancelled: AtomicBool,
-    /// Number of uses of the memory reserve when the job started.
+    /// How often the memory reserve had been used in this process when the job started.
     uses: u64,
     /// Progress as the bits of an `f64`. Non-negative floats sort like their bits as integers, so `fetch_max` keeps
     /// the progress from falling.

@@ -44,7 +44,8 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
     for header in &meta.headers {
         let (width, height) = (header.layer_size.0, header.layer_size.1);
         check_size(width as u64, height as u64)?;
-        // The decoder allocates memory for all channels before it reads the first one.
+        // Refuse a picture that so short a file cannot contain: the decoder allocates memory for all channels before it
+        // reads the first one.
         if (width * height).saturating_mul(header.channels.bytes_per_pixel)
             > bytes.len().saturating_mul(MAX_COMPRESSION)
         {

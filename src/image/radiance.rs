@@ -1,8 +1,9 @@
 //! Reads Radiance HDR files (Ward 1991, "Real Pixels"; `picture` of Radiance's file formats). This module reads the
 //! header; the crate `image` decodes the pixels.
 //!
-//! The stored values are divided by the factors `EXPOSURE` and `COLORCORR`. Colours in other `PRIMARIES` or in CIE XYZ
-//! are converted to linear Rec.709. Scan lines may run in any of the eight directions.
+//! If the picture holds colours, the stored values are divided by the factors `EXPOSURE` and `COLORCORR`. Colours in
+//! other `PRIMARIES` or in CIE XYZ are converted to linear Rec.709. Data other than colours stay unchanged. Scan lines
+//! may run in any of the eight directions.
 //!
 //! Not modelled: `PIXASPECT`, the pixel aspect ratio.
 
@@ -158,7 +159,8 @@ impl Colour {
     }
 }
 
-/// Parses `N` numbers separated by blanks, and ignores anything after them. `None` if there are fewer.
+/// Parses `N` numbers separated by blanks, and ignores anything after them. `None` if there are fewer, or if one is not
+/// a finite number.
 fn numbers<const N: usize>(value: &[u8]) -> Option<[f64; N]> {
     let text = str::from_utf8(value).ok()?;
     let mut parts = text.split_whitespace().map(|part| part.parse().ok().filter(|v: &f64| v.is_finite()));

@@ -34,7 +34,7 @@ pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
     Ok(pixels.saturating_add(profile).saturating_add(inks) as u64)
 }
 
-/// Bytes for a PNG: its samples in the decoder's format, and its other chunks.
+/// Returns the bytes of working memory for a PNG: for its samples in the decoder's format, and for its other chunks.
 fn png(bytes: &[u8]) -> usize {
     let mut total = 0usize;
     for (name, _, content) in png_chunks(bytes) {

@@ -22,7 +22,8 @@ pub(super) struct Node {
     /// Indices of the values that this node reads; `None` for optional inputs that are absent.
     pub inputs: Vec<Option<usize>>,
     pub outputs: Vec<Option<usize>>,
-    /// Indices of the inputs that no later node reads, and that are dropped after this node. Constants are not listed.
+    /// Indices of the inputs and outputs that no later node reads. They are dropped after this node. Constants are not
+    /// listed.
     pub last_uses: Vec<usize>,
 }
 

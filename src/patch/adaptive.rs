@@ -55,7 +55,7 @@ struct Votes {
     channels: usize,
     mean: Vec<f32>,
     choice: Vec<f32>,
-    /// The offset of the chosen pixel; `None` without a match.
+    /// Offset from the target pixel to the chosen exemplar pixel; `None` if no patch over the target pixel has a match.
     offset: Vec<Option<u32>>,
     /// Whether at least one pixel of the rectangle has more than one candidate.
     is_contested: bool,
@@ -70,7 +70,7 @@ struct Power {
     product: f64,
     /// Power of (choice - mean): `Σ|D|²`.
     difference: f64,
-    /// Power of the exemplar at the sources of the choice.
+    /// Power of the exemplar's fine detail at the sources of the choice.
     exemplar: f64,
 }
 
@@ -104,7 +104,7 @@ impl Tile<'_> {
         [wider(&self.x, self.size[0]), wider(&self.y, self.size[1])]
     }
 
-    /// Returns the share of the choice in each pixel of the tile.
+    /// Returns the share t of the choice in the blend for each pixel of the tile, row by row.
     fn shares(&self, votes: &Votes, radius: usize) -> Vec<f32> {
         let [columns, rows] = self.wider(radius);
         let near = |v: usize, of: &Range<usize>| v.saturating_sub(radius).max(of.start)..(v + radius + 1).min(of.end);

@@ -12,7 +12,7 @@ pub(super) struct Ballot<'a> {
     pub style: &'a Image,
     /// Width of a patch.
     pub patch: usize,
-    /// Mean distance of a match.
+    /// Mean of the distances of all matches.
     scale: f64,
 }
 

@@ -1,8 +1,9 @@
-//! An alternative to PatchMatch: a k-d tree over the channel means of patches (Bentley 1975). A query patch descends
-//! to one leaf without backtracking, and is compared in full with the patches around this leaf in tree order.
+//! An alternative to PatchMatch: a k-d tree over the channel means of patches (Bentley 1975). A query patch descends to
+//! one leaf without backtracking. It is then compared, pixel by pixel, with the patches nearest to this leaf in the
+//! order of the leaves.
 //!
-//! Means carry little information about texture, so the matches are worse than PatchMatch's, but no iterations and no
-//! initial field are needed.
+//! Means carry little information about texture, so the matches are worse than PatchMatch's. In exchange, no iterations
+//! and no initial field are needed.
 
 use super::domain::Domain;
 use super::field::Field;
@@ -107,7 +108,8 @@ fn widest(means: &Means, members: &[u32]) -> usize {
         let (low, high) = values.fold((i16::MAX, i16::MIN), |(l, h), v| (l.min(v), h.max(v)));
         i32::from(high) - i32::from(low)
     };
-    // If several channels have the widest range, take the first one, so that padding is never chosen.
+    // If several channels have the widest range, take the first one. The padding channels come last and have a range of
+    // 0, so they are never chosen.
     (0..means.lanes).rev().max_by_key(|&c| spread(c)).unwrap_or(0)
 }
 

@@ -76,8 +76,8 @@ pub fn origin(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize,
     common_offset(field, patch, [x, y]).map(|offset| unpack(offset.wrapping_add(pack(x, y))))
 }
 
-/// Returns the share of whole exemplar pixels in `picture`: of the pixels for which `wanted` holds and that have a
-/// match, the share whose colour is that of an exemplar pixel placed there by a patch.
+/// Returns the share of whole exemplar pixels in `picture`. Counted are the pixels for which `wanted` holds and that
+/// have a match. A pixel is whole if its colour is that of an exemplar pixel that a patch places there.
 pub fn whole_share(
     picture: &Image,
     field: &Field,

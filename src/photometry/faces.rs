@@ -115,8 +115,8 @@ impl Faces {
         self.end_patch(first, is_luminous);
     }
 
-    /// Adds the side of a box that faces along `normal`, an axis of either sign. A vertical side is luminous up to its
-    /// height in `heights`, counted from the face towards γ = 0, and dark beyond.
+    /// Adds the side of a box that faces along `normal`, a positive or negative coordinate axis. A vertical side is
+    /// luminous up to its height in `heights`, counted from the face towards γ = 0, and dark beyond.
     fn add_side(&mut self, size: DVec3, heights: [f64; 4], normal: DVec3, gap: f64, is_luminous: bool) {
         let axis = (0..3).find(|&i| normal[i] != 0.0).unwrap_or(0);
         let [next, last] = [(axis + 1) % 3, (axis + 2) % 3].map(|i| DVec3::AXES[i]);
@@ -244,7 +244,8 @@ fn icosahedron() -> Vec<[DVec3; 3]> {
     triangles
 }
 
-/// Divides a triangle on the unit ball `times` times into four triangles on the ball.
+/// Divides a triangle on the unit ball into 4^`times` triangles on the ball: each step divides every triangle into
+/// four.
 fn divide([a, b, c]: [DVec3; 3], times: usize, out: &mut Vec<[DVec3; 3]>) {
     if times == 0 {
         return out.push([a, b, c]);

@@ -45,8 +45,8 @@ pub struct Source {
     pub position: f64,
 }
 
-/// Sums over the pixels of a region, with their luminance L and solid angle ω: Σ ω, Σ L ω, and Σ L ω times the
-/// direction.
+/// Sums over the pixels of a region: Σ ω, Σ L ω and Σ L ω d. L is a pixel's luminance, ω its solid angle, and d its
+/// unit direction.
 #[derive(Clone, Copy, Default)]
 struct RegionSums {
     solid_angle: f64,
@@ -186,7 +186,7 @@ pub fn position_index(direction: DVec3) -> f64 {
         let second = (21.0 + 0.266_67 * tau - 0.002_963 * tau * tau) * 1e-5 * sigma * sigma;
         (first + second).exp()
     } else {
-        // Iwata and Tokura 1997: a function of the ratio of the distance from the line of sight to the distance ahead.
+        // Iwata and Tokura 1997: a function of the tangent of the angle between the direction and the line of sight.
         let ratio = side.hypot(up) / ahead.max(1e-9);
         let factor = if ratio < 0.6 { 0.8 } else { 1.2 };
         (1.0 + factor * ratio).min(16.0)

@@ -49,8 +49,9 @@ impl<'a> Words<'a> {
 /// `Format`, with the line number, if the file is malformed; `Unsupported` for photometry of types A and B.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let text = Lines::new(bytes)?;
-    // LM-63-2002 reserves the ballast-lamp factor of the editions before it for future use, and LM-63-2019 states there
-    // how the file was made ("file generation type", such as 1.1 for an accredited laboratory).
+    // Editions before LM-63-2002 state the ballast-lamp factor in this place. LM-63-2002 reserves the place for future
+    // use. LM-63-2019 states there how the file was made ("file generation type", such as 1.1 for an accredited
+    // laboratory).
     let edition = text.numbered().next().map_or("", |(_, line)| line).to_ascii_uppercase();
     let has_lamp_factor = !["IESNA:LM-63-2002", "IES:LM-63-"].iter().any(|later| edition.starts_with(later));
     let mut lines = text.numbered();
@@ -138,7 +139,8 @@ fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Resu
     let plane = |i: usize| (angles[i], &candela[i * gammas..][..gammas]);
     let mut all: Vec<(f64, &[f64])> = (0..angles.len()).map(plane).collect();
     let mirror = |all: &mut Vec<(f64, &[f64])>, about: f64| {
-        // Skip mirror images that coincide with an existing plane, such as a plane on the mirror.
+        // Skip the mirror image of a plane if it coincides with an existing plane: the image of a plane in the plane of
+        // symmetry is the plane itself.
         let images: Vec<_> = all.iter().map(|&(c, values)| ((2.0 * about - c).rem_euclid(360.0), values)).collect();
         let missing: Vec<_> = images.into_iter().filter(|(c, _)| all.iter().all(|(d, _)| d != c)).collect();
         all.extend(missing);

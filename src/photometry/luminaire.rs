@@ -125,7 +125,7 @@ impl Luminaire {
     }
 
     /// Luminous flux in lumens: the integral of the intensity over the sphere. It is exact if the intensity is linear
-    /// between the vertical angles.
+    /// between the vertical angles and between the planes.
     pub fn flux(&self) -> f64 {
         let (n, m) = (self.gammas.len(), self.planes.len());
         // Share of the circle that each plane represents: half the gaps to its neighbours.

@@ -85,8 +85,8 @@ impl Opening {
         (is_finite && opening.largest_area() > MIN_AREA).then_some(opening)
     }
 
-    /// Returns the flat faces that a distant observer in a unit direction sees. Their projections cover the projection
-    /// of the opening without gaps or overlap.
+    /// Returns the flat faces that stand for the luminous area as a distant observer in a unit direction sees it. Their
+    /// projected areas sum to that of the opening.
     pub fn faces(&self, direction: DVec3) -> Vec<Face> {
         match *self {
             Self::Box { size, heights } => box_faces(size, heights, direction),
@@ -102,7 +102,7 @@ impl Opening {
         }
     }
 
-    /// Returns the area in m² as seen from a unit direction.
+    /// Returns the luminous area in m² as seen from a unit direction, with dark parts of a box's sides left out.
     pub fn projected_area(&self, direction: DVec3) -> f64 {
         let u = direction.abs();
         match *self {

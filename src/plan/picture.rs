@@ -68,7 +68,7 @@ impl Picture {
     /// The paths of a pixel are divided among its replications (independent point sequences), and the paths of each
     /// replication among nets of 1, 2, 4, 8, … points. The curve holds if each replication has a single net. For other
     /// numbers of paths, the errors σ of the nets are added as independent errors: error² = Σ (nᵢ / paths)² σ²(nᵢ),
-    /// where nᵢ is the number of points of net i. A few paths beyond a whole net may therefore even increase the error.
+    /// where nᵢ is the number of points of net i. A few paths more than a whole net may therefore increase the error.
     fn error(&self, paths: u32) -> f64 {
         let (curve, replications) = (self.curve(), f64::from(REPLICATIONS));
         let square = |points: f64| replications * curve.squared_error(self.seconds(replications * points));

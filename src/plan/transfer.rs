@@ -43,8 +43,8 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
         Strength::new((&world, lit.placed.material, &triangles), &transfer.params.relight, clock, job.part(0.2, 0.5))?;
     let picture = Picture::new(&world, &camera, &transfer.params.render, clock, job.part(0.5, 1.0))?;
 
-    // Both stages build the acceleration structure of the scene. Subtract this time twice, and allocate the rest by the
-    // error curves of the stages.
+    // Both stages build the acceleration structure of the scene. For a goal in seconds, subtract twice the time of
+    // building it. Allocate the rest along the error curves of the stages.
     let light = match goal {
         Goal::Seconds(budget) => Goal::Seconds((budget - 2.0 * building).max(0.0)),
         error => error,

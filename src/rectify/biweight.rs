@@ -1,11 +1,11 @@
 //! Expected values of terms of Tukey's biweight, for normally distributed residuals. `sphere` computes the covariance
-//! of a vanishing point from them. Residuals are in units of the biweight's limit. Beyond the limit the weight is 0,
-//! so all means are over residuals with `|r| < 1`.
+//! of a vanishing point from them. Residuals are in units of the biweight's limit. Beyond the limit the weight is 0, so
+//! residuals with `|r| ≥ 1` are left out of all means.
 
 use std::sync::LazyLock;
 
-/// Means over normally distributed residuals `r` of known variance, where only residuals with `|r| < 1` count. All
-/// three means tend to 1 as the variance tends to 0, and fall as the variance grows.
+/// Means over those residuals `r` with `|r| < 1`, for normally distributed residuals of known variance. As the variance
+/// tends to 0, all three means tend to 1. They fall as the variance grows.
 #[derive(Clone, Copy, Debug)]
 pub struct Biweight {
     /// Mean of `r²`, divided by the variance.
@@ -20,8 +20,8 @@ pub struct Biweight {
 /// standard deviation of the residuals.
 const INTERVALS: usize = 64;
 
-/// `MIN_DEVIATION`: smallest standard deviation for which the means are integrated. `STEPS`: number of integration
-/// steps. [rounding]
+/// `MIN_DEVIATION`: smallest standard deviation for which the means are integrated; for smaller ones, its means are
+/// used. `STEPS`: number of integration steps. [rounding]
 const MIN_DEVIATION: f64 = 1e-3;
 const STEPS: usize = 256;
 

@@ -48,12 +48,12 @@ const MAX_RESIDUAL: f64 = 0.25;
 /// Limit of Tukey's biweight in standard deviations (95 % efficiency). [convention]
 const BIWEIGHT_LIMIT: f64 = 4.685;
 /// Assumed number of detected segments per physical line, for example both sides of a frame or the pieces of one line.
-/// Segments of one line have dependent errors. The stated error grows with its root; the test prints the quantiles of
-/// true over stated error. [bench: `tests/real_rectify.rs`]
+/// Segments of one line have dependent errors. The stated error is proportional to the square root of this number. The
+/// test prints the quantiles of true over stated error. [bench: `tests/real_rectify.rs`]
 const SEGMENTS_PER_LINE: f64 = 2.0;
-/// Standard deviation of `Distortion::corner` caused by the deviation of real lenses from the model. It is the root
-/// mean square of the estimates over views cut out of panoramas: such views have no lens distortion apart from errors
-/// of stitching. [bench: `tests/real_rectify.rs`]
+/// Standard deviation of `Distortion::corner` beyond its sampling error, because real lenses deviate from the model. It
+/// is measured on views cut out of panoramas, whose true distortion is 0 apart from errors of stitching: the root mean
+/// square of the estimates. [bench: `tests/real_rectify.rs`]
 const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
@@ -192,7 +192,8 @@ fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
 /// Number of iterations of the M-estimate.
 const ROUNDS: usize = 20;
 
-/// Returns the value of k that most segments support: an M-estimate started at the weighted median.
+/// Returns the value of k that most segments support: an M-estimate started at the weighted median. `None` if fewer
+/// than [`MIN_SEGMENTS`] segments support it.
 fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
     if estimates.len() < MIN_SEGMENTS {
         return None;
@@ -204,7 +205,7 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
 }
 
 /// Returns the result of one step of the M-estimate: the weighted mean over the segments within the biweight's limit
-/// around `corner`, with a standard deviation derived from their scatter.
+/// around `corner`. Its standard deviation follows from the scatter of these segments and from [`MODEL_ERROR`].
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
     let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off).unwrap_or(0.0)).max(1.0);

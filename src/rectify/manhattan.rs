@@ -175,7 +175,7 @@ fn hypotheses(lines: &[WeightedLine], candidates: &[DVec3], focal: Option<f64>) 
                 }
             }
         }
-        // Use the candidate alone, in case all lines are parallel.
+        // Use the candidate alone, in case all lines run to this one vanishing point.
         let alone = unproject(p, focals[focals.len() / 2]);
         push(alone, alone.any_orthonormal_vector(), focals[focals.len() / 2]);
         // Pair the candidate with a long line that does not run towards it.

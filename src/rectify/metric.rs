@@ -45,14 +45,15 @@ impl Line {
 
     /// The paper's metric, Eq. 2: `min(d_naive, d_vanishing)`, with `d_vanishing = x / y * d_naive`. `d_naive` is the
     /// distance of `p` from the line, and `x` is half the length of the segment. `y` is the distance along the line
-    /// from the segment's midpoint to the point nearest to `p`.
+    /// from the segment's midpoint to the point nearest to `p`. The metric is 0 if `p` lies on the line.
     pub fn printed_distance(&self, p: DVec3) -> f64 {
         let away = p.truncate() - self.centre * p.z;
         let across = self.direction.perp_dot(away).abs();
         if across == 0.0 {
             return 0.0;
         }
-        // If `p` makes a denominator zero, the division yields infinity and `min` selects the other distance.
+        // If one denominator is zero, the division yields infinity and `min` selects the other distance. If both are
+        // zero, the metric is infinite.
         (across / p.z.abs()).min(self.half * across / self.direction.dot(away).abs())
     }
 }

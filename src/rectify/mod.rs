@@ -20,8 +20,9 @@
 //!
 //! Known weaknesses:
 //!
-//! - The reported standard deviations of directions are right for most, but large errors are more frequent than they
-//!   say, and where lines are few and noisy they are somewhat too small (docs/notes/vanishing-points.md).
+//! - The reported standard deviations are right for most directions. Large errors, however, are more frequent than the
+//!   standard deviations say. Where lines are few and noisy, the standard deviations are somewhat too small
+//!   (docs/notes/vanishing-points.md).
 //! - Lines found on a floor by chance can displace a direction that few lines support; the reported error of the
 //!   direction does not show this.
 //! - Short segments share a small bias, whose cause is unknown.

@@ -105,8 +105,8 @@ pub struct UnwarpParams {
     /// Maximum length of the longer side of the unwarped image in pixels, in `[16, 16384]`. The image is smaller if
     /// the photo resolves the plane less.
     pub max_side: usize,
-    /// Maximum magnification of a photo pixel relative to the best-resolved part of the plane, > 0. Parts of the plane
-    /// where photo pixels would be magnified more are cut off.
+    /// Maximum magnification, > 0: the side of the square that a photo pixel covers on the plane, divided by this side
+    /// in the best-resolved part of the plane. Parts of the plane with a greater magnification are cut off.
     pub max_magnification: f64,
 }
 

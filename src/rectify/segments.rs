@@ -110,8 +110,9 @@ impl FittedSegment {
         self.pixels as f64 / (self.segment.length() * self.width).max(1.0)
     }
 
-    /// Minus the logarithm of the probability that at least as many pixels of the rectangle agree in direction by
-    /// chance (Chernoff's bound of the binomial tail).
+    /// Minus the logarithm of the probability that, by chance, at least as many pixels of the rectangle agree in
+    /// gradient direction as lie in the region (Chernoff's bound of the binomial tail). 0 if fewer agree than chance
+    /// predicts.
     fn log_surprise(&self) -> f64 {
         let share = self.density().min(1.0 - 1e-9);
         let chance = TOLERANCE / std::f64::consts::PI;
@@ -190,9 +191,9 @@ impl Grower<'_> {
         }
     }
 
-    /// Fits a line by total least squares, weighting each pixel by its gradient magnitude, which locates an edge to a
-    /// fraction of a pixel. Excludes the ends, where corners bend the gradient. Returns `None` if the region has too
-    /// few pixels to have a direction, or is wider than it is long.
+    /// Fits a line by total least squares. Each pixel is weighted by its gradient magnitude; these weights locate an
+    /// edge to a fraction of a pixel. The ends are left out, because corners bend the gradient there. `None` if the
+    /// region has too few pixels to have a direction, or is wider than it is long.
     fn fit(&self) -> Option<FittedSegment> {
         if self.region.len() < 8 {
             return None;

@@ -10,12 +10,12 @@ use crate::geometry::{Segment, linear::symmetric_eigen};
 use glam::{DMat3, DVec2, DVec3};
 
 /// Limit of the distance `d` of a segment's endpoints from the line through its midpoint and a vanishing point. The
-/// unit is half the image's longer side, so this is about 2 pixels in an image of 640 pixels. A segment belongs to a
-/// vanishing point if `(d / ENDPOINT_LIMIT)² + (s / SINE_LIMIT)² ≤ 1`. By the AUC@10 of that
-/// bench, a metric on segments is best with a limit of 1 to 2 pixels. [bench vp]
+/// unit is half the image's longer side; the limit is about 2 pixels in an image of 640 × 480 pixels. A segment belongs
+/// to a vanishing point if `(d / ENDPOINT_LIMIT)² + (s / SINE_LIMIT)² ≤ 1`. The AUC@10 that the bench prints (area
+/// under the curve of recall up to an error of 10 degrees) is best for limits of 1 to 2 pixels. [bench vp]
 const ENDPOINT_LIMIT: f64 = 0.006;
-/// Limit of the sine `s` of the angle between the segment and that line; it matters for short segments.
-/// [origin not recorded]
+/// Limit of the sine `s` of the angle between a segment and the line from its midpoint to a vanishing point. It matters
+/// for short segments, whose `d` is small at every angle. [origin not recorded]
 const SINE_LIMIT: f64 = 0.06;
 
 /// A point coincides with the midpoint of a line, up to rounding, if their squared distance is at most this.

@@ -53,13 +53,14 @@ pub struct Exif {
     pub colour: ExifColour,
 }
 
-/// Reads the metadata of a picture file of any format. A file without EXIF has none.
+/// Reads the metadata of a picture file of any format. For a file without EXIF, all values are absent and the
+/// orientation is upright.
 pub fn read(bytes: &[u8]) -> Exif {
     let picture = notes(bytes).and_then(Ifds::new).and_then(Ifds::first);
     picture.map(|picture| Exif::new(&picture)).unwrap_or_default()
 }
 
-/// Returns the EXIF block of a file, which has the structure of a TIFF file without pixels.
+/// Returns the EXIF block of a file, or `None`. The block has the structure of a TIFF file without pixels.
 fn notes(bytes: &[u8]) -> Option<&[u8]> {
     const NAME: &[u8] = b"Exif\0\0";
     match bytes {

@@ -10,9 +10,9 @@ pub(super) use exif::{Exif, read};
 pub use orientation::Orientation;
 pub(super) use orientation::Upright;
 
-/// Relative standard deviation of a focal length from EXIF. The focal length marked on a lens is accurate to about
-/// 5 %. Besides, the 35 mm equivalent is rounded to a millimetre, and it refers to the diagonal or to the width (4 %
-/// apart at 4:3). [convention]
+/// Relative standard deviation of a focal length from EXIF. The focal length marked on a lens is accurate to about 5 %.
+/// Besides, the 35 mm equivalent is rounded to a millimetre. Some cameras state it for an equal diagonal of the
+/// picture, others for an equal width; the two differ by 4 % at 4:3. [convention]
 const FOCAL_ERROR: f64 = 0.05;
 
 /// Diagonal in millimetres of film of 36 x 24 mm, to which equivalent focal lengths refer. [convention: CIPA DCG-001]
@@ -87,8 +87,8 @@ impl PhotoMetadata {
         self.focal.map(|focal| [focal, FOCAL_ERROR * focal])
     }
 
-    /// Returns the luminance that became the pixel value 1: L = 78 N² / (q t S), the luminance that just saturates at
-    /// the ISO speed S, the f-number N and the exposure time t. The constant `LENS` is q.
+    /// Returns the luminance that became the pixel value 1: L = 78 N² / (q t S). This luminance just saturates at the
+    /// ISO speed S, the f-number N and the exposure time t. The constant `LENS` is q. `None` if N, t or S is unknown.
     pub fn white_luminance(&self) -> Option<Luminance> {
         let (n, t, s) = (self.f_number?, self.exposure_time?, self.iso?);
         let expected = SATURATION * n * n / (LENS * t * s);

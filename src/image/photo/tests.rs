@@ -16,7 +16,8 @@ pub fn notes(order: Order, picture: &[Entry], camera: &[Entry]) -> Vec<u8> {
     let with = |offset: u32| [picture, &[(0x8769, LONG, u32(offset))]].concat();
     let first = structure(order, &with(0)).len();
     let mut notes = structure(order, &with(first as u32));
-    // The offsets in the second directory are relative to the file, so add the position of this directory.
+    // `structure` counts the offsets of values from a header of 8 bytes before its directory. In the file, this
+    // directory begins at byte `first`, so add `first - 8`.
     let (_, _, u32) = writers(order);
     let own = structure(order, camera);
     let mut own = own[8..].to_vec();

@@ -80,8 +80,8 @@ impl<'a> Directory<'a> {
         self.ifds
     }
 
-    /// Returns the values of a tag; `None` if the directory lacks it. Values outside the file count in [`Field::len`],
-    /// but cannot be read.
+    /// Returns the values of a tag; `None` if the directory lacks the tag, or if their type is unknown. Values outside
+    /// the file count in [`Field::len`], but cannot be read.
     pub fn field(&self, tag: u16) -> Option<Field<'a>> {
         let order = self.ifds.order;
         let entry = self.entries.iter().find(|e| order.u16([e[0], e[1]]) == tag)?;
@@ -207,7 +207,7 @@ pub mod tests {
     /// One entry of a directory: its tag, its type code, and its values as bytes in the file's order.
     pub type Entry = (u16, u16, Vec<u8>);
 
-    /// A block with one directory in either byte order. Values too long for their entry follow the directory.
+    /// A block with one directory, in the given byte order. Values too long for their entry follow the directory.
     pub fn structure(order: Order, entries: &[Entry]) -> Vec<u8> {
         let (head, u16, u32) = writers(order);
         let mut out = [head.to_vec(), u32(8), u16(entries.len() as u16)].concat();

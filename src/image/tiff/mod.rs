@@ -100,7 +100,7 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, tags: &PixelTags, at: &C
         let pixel = out.pixel(at.x + x, at.y);
         let last = pixel.len() - 1;
         match tags.colour {
-            // This chunk holds one sample of each pixel.
+            // In a planar file, this chunk holds one sample of each pixel. Alpha goes to the last channel.
             _ if stored == 1 && at.plane > 0 => pixel[if at.plane == colours { last } else { at.plane }] = value(x),
             Colour::Palette(map) => {
                 let size = 1 << tags.depth.bits();

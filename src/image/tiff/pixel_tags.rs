@@ -327,7 +327,8 @@ fn check_is_picture(directory: &Directory) -> Result<()> {
 }
 
 fn depth(directory: &Directory, samples: usize) -> Result<Depth> {
-    // Returns the value that all samples share. A single value in the file may apply to all samples.
+    // Returns the value that all samples share; an error if they differ. The file may state it once for all samples. If
+    // the tag is absent, all samples have the value `default`.
     let all = |tag, name, default| -> Result<u64> {
         let Some(field) = directory.field(tag) else { return Ok(default) };
         let first = field.integer(0).ok_or_else(|| missing(name))?;

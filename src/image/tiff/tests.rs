@@ -345,7 +345,7 @@ fn unsupported_features_are_named() {
         let error = probe(&picture.file()).unwrap_err();
         assert!(error.kind == ErrorKind::Unsupported && error.message.contains(name), "{error}");
     }
-    // Overwrite the value of the compression tag, because this test cannot compress in these ways.
+    // Change only the tag that names the compression: this test has no encoder for these compressions.
     let mut file = plain.file();
     assert_eq!(file[46..48], bytes(259));
     for (code, name) in [(7, "JPEG"), (4, "fax"), (50_000, "Zstandard")] {

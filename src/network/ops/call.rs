@@ -65,7 +65,7 @@ impl<'a> Settings<'a, '_> {
         sizes.try_into().map_err(|_| wrong())
     }
 
-    /// Returns an error unless an attribute equals `value`, the only value that is supported.
+    /// Returns an error if an attribute is present and differs from `value`, the only value that is supported.
     pub fn only(&self, name: &str, value: i64) -> Result<()> {
         match self.integer(name, value) {
             found if found == value => Ok(()),

@@ -273,7 +273,8 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
                 Binary::Min => floats!(|a: f32, b| a.min(b)),
                 Binary::Max => floats!(|a: f32, b| a.max(b)),
                 Binary::PRelu => floats!(|a, b| if a < 0.0 { a * b } else { a }),
-                // ONNX defines only `fmod` = 1 for floats; its reference implementation ignores the attribute, too.
+                // For floats, ONNX defines only `fmod` = 1. The attribute is not read here; ONNX's reference
+                // implementation does not read it for floats, either.
                 Binary::Mod { .. } => floats!(|a: f32, b| a % b),
                 Binary::Equal => truths!(|a, b| a == b),
                 Binary::Less => truths!(|a, b| a < b),
@@ -395,7 +396,8 @@ impl Broadcast {
     }
 }
 
-/// Clips values to bounds, which older files give as attributes and newer files as inputs.
+/// Clips values to bounds, which older files give as attributes and newer files as inputs. An absent bound does not
+/// clip.
 pub fn clip(low: Option<f32>, high: Option<f32>, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let bound = |setting: Option<f32>, k: usize, none: f32| match (setting, call.optional(k)) {

@@ -288,7 +288,8 @@ fn turned(x: &Tensor, order: &[i64], call: &Call) -> Result<Tensor> {
     }
 }
 
-/// Moves channels to pixels: each group of `block²` channels becomes a block of `block × block` pixels.
+/// Moves channels to pixels: `block²` channels become a block of `block × block` pixels. If `columns_first` (ONNX's
+/// mode CRD), these are neighbouring channels; otherwise (mode DCR), they are `channels / block²` channels apart.
 pub fn depth_to_space(block: usize, columns_first: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let [batch, channels, height, width] = x.shape_of()?;

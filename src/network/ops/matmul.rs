@@ -96,7 +96,8 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     let (values_a, values_b) = (a.as_floats()?, b.as_floats()?);
     shape.extend([rows, columns]);
     count(&shape)?;
-    // Process rows in fours. Pad the last four rows, and cut the padding off afterwards.
+    // Process rows in groups of four. Pad the output of the last group to four rows, and cut the padding off
+    // afterwards.
     let padded = rows.next_multiple_of(ROWS);
     let mut out = call.budget.zeros(&[stack, padded, columns])?;
     exec::for_rows(&mut out, ROWS * columns, call.job, |k, out| {

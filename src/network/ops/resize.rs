@@ -215,7 +215,8 @@ fn taps(
     Ok(taps)
 }
 
-/// Weights of Keys' cubic convolution for four pixels, at a fraction `t` between the second and the third.
+/// Weights of Keys' cubic convolution for four pixels, at a fraction `t` between the second and the third. `a` is Keys'
+/// parameter.
 fn cubic(t: f32, a: f32) -> [f32; 4] {
     let near = |t: f32| ((a + 2.0) * t - (a + 3.0)) * t * t + 1.0;
     let far = |t: f32| ((a * t - 5.0 * a) * t + 8.0 * a) * t - 4.0 * a;

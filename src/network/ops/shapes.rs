@@ -113,7 +113,7 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
     let size = x.shape[axis];
     let sizes: Vec<usize> = match call.integers(sizes, 1)? {
         Some(sizes) => sizes.iter().filter_map(|&n| usize::try_from(n).ok()).collect(),
-        // Split evenly; the last part may be smaller.
+        // Give every output ⌈size / outputs⌉ elements along the axis; the last outputs may get fewer.
         None => {
             let even = size.div_ceil(call.outputs.max(1));
             (0..call.outputs).map(|k| even.min(size.saturating_sub(k * even))).collect()
@@ -149,7 +149,8 @@ pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Ten
     Ok(parts)
 }
 
-/// Returns the sizes of the axes from `start` to `end`.
+/// Returns the sizes of the axes from `start` up to, but excluding, `end`. Negative indices count from the end, and
+/// without an `end` the last axis is included.
 pub fn shape(start: i64, end: Option<i64>, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let rank = x.shape.len() as i64;

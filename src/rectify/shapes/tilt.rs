@@ -25,7 +25,8 @@ const KNOWN_FOCAL: f64 = 0.1;
 const WIDTH: f64 = 0.02;
 /// Number of tilts of the coarse search that are refined. [bench photos:tune]
 const STARTS: usize = 12;
-/// First and last step of the refinement, in radians. [convention]
+/// First and last step of the refinement, in radians. The steps of the logarithm of the focal length are twice as
+/// large. [convention]
 const FIRST_STEP: f64 = 0.05;
 const LAST_STEP: f64 = 1e-4;
 /// The cost of a normal is its squared deviation from the normal that the lines imply, divided by the variance. The
@@ -136,8 +137,9 @@ fn moved(tilt: &Tilt, [right, down, focal]: [f64; 3]) -> Tilt {
     Tilt { normal: (tilt.normal + a * right + b * down).normalize(), focal: tilt.focal * focal.exp() }
 }
 
-/// Refines a tilt by a pattern search: takes the best step along an axis or a diagonal, and halves the step if no step
-/// decreases the cost. Returns the final cost and tilt.
+/// Refines a tilt by a pattern search over two tangents of the normal and, unless `is_known`, the logarithm of the
+/// focal length. Takes the best of the steps along one tangent, along the focal length, or along both. Halves the step
+/// if none decreases the cost. Returns the final cost and tilt.
 fn refine(total: &TotalCost, mut tilt: Tilt, is_known: bool) -> (f64, Tilt) {
     let mut min_cost = total.of(&tilt);
     let focal_moves: &[f64] = if is_known { &[0.0] } else { &[0.0, 2.0, -2.0] };
