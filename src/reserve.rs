@@ -11,8 +11,9 @@
 //! The process can still be aborted in three cases:
 //!
 //! - Another thread takes the memory right after the test by [`has_room`].
-//! - The system cannot serve the 48 bytes that the standard library requests directly from the system, around the
-//!   reserve. It does so when a thread starts, and when a call of the library first fails on a thread.
+//! - The system cannot serve the 48 bytes that the standard library requests directly from the system, bypassing the
+//!   reserve. The standard library does so when a thread starts, and when a call of the library first fails on a
+//!   thread.
 //! - The system cannot serve the memory that its C library requests when a thread first calls this library.
 //!
 //! Without the feature `reserve`, the program that links the library chooses the allocator.

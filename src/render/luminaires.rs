@@ -21,12 +21,13 @@ use std::sync::Arc;
 /// Distance in metres by which flat faces are moved outwards, so that a face in the plane of a ceiling lies in front of
 /// the ceiling. [convention]
 const GAP: f64 = 2e-4;
-/// Flat faces are moved outwards by [`GAP`], or by this multiple of the offset with which rays leave a surface at the
-/// largest coordinates of the scene if that is more. Rounding then cannot close the gap. [rounding]
+/// The distance by which flat faces are moved outwards is the larger of [`GAP`] and this multiple of a ray's offset:
+/// the distance by which a ray starts off a surface at the largest coordinate of the scene. Rounding then cannot close
+/// the gap. [rounding]
 const GAP_OFFSETS: f64 = 8.0;
-/// The luminance is intensity / projected area. In this quotient, the area is at least this share of the largest area
-/// as seen along an axis of the luminaire. Otherwise a flat opening would have infinite luminance along its plane,
-/// where its area is 0. [rounding]
+/// The luminance is intensity / projected area. In this quotient, the area counts as at least this share of the
+/// opening's largest projected area along an axis of the luminaire. Otherwise a flat opening would have infinite
+/// luminance along its plane, where its projected area is 0. [rounding]
 const EDGE_ON: f64 = 1e-6;
 /// Steps in degrees of C and γ of the grid of directions in which luminances are computed to bound the intensities of
 /// patches. [convention]
@@ -140,7 +141,7 @@ impl Luminaires {
     }
 }
 
-/// Returns the distance by which flat faces are moved outwards.
+/// Returns the distance in metres by which flat faces are moved outwards (see [`GAP_OFFSETS`]).
 fn gap(scene: &Scene, centre: DVec3) -> f64 {
     let points = scene.meshes.iter().flat_map(|mesh| &mesh.positions);
     let largest = points.map(|p| (p.as_dvec3() - centre).abs().max_element()).fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! Chooses a camera for a scene that has no camera. The chosen camera stands in a corner of the room, below the lit
-//! surface, and has the most open view of several candidates.
+//! Chooses a camera for a scene that has no camera. The candidates stand near the corners of a given surface, such as
+//! the ceiling, on its lit side. The chosen camera has the most open view of all candidates.
 
 use super::world::World;
 use crate::scene::surface::Surface;

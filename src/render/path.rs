@@ -22,9 +22,9 @@ const ROULETTE_START: u32 = 2;
 /// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value.
 /// [origin not recorded]
 const CERTAIN_SHARE: f32 = 0.5;
-/// Largest survival probability, so that a path between white walls ends eventually. The variance is infinite if the
-/// albedo of the walls exceeds the square root of this probability, here 0.999; white standards of reflectance reach
-/// 0.99, which needs at least 0.98. Any value from 0.996 to 0.999 serves. [convention]
+/// Largest survival probability, so that a path between white walls ends eventually. For walls of albedo a, the
+/// variance is infinite unless the survival probability is at least a². White standards of reflectance have a = 0.99
+/// and need 0.98; the value here suffices up to a = 0.999. Any value from 0.996 to 0.999 serves. [convention]
 const MAX_SURVIVAL: f32 = 0.998;
 
 /// Largest number of bounces, as a guard against endless paths. With a survival probability of [`MAX_SURVIVAL`], one
@@ -123,8 +123,8 @@ pub struct PathLength {
     /// Largest number of bounces of a path.
     pub max_bounces: u32,
     /// Factor for Russian roulette: the product of this factor and the throughput of a path is the path's expected
-    /// contribution, as a share of the pixel's estimate. `None` stands for the reciprocal of the throughput after the
-    /// first bounce.
+    /// contribution, as a share of the pixel's estimate. `None` until the first bounce; the factor then becomes the
+    /// reciprocal of the throughput after this bounce.
     pub roulette_weight: Option<Vec3>,
 }
 
@@ -212,8 +212,8 @@ pub(super) fn continue_path<O: Observer>(
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight
     {
-        // Let dim paths survive with a higher probability than their expected share, because this share underestimates
-        // rare bright light.
+        // If the expected share is below 1/4, the path survives with the probability √share instead of the smaller
+        // share / `CERTAIN_SHARE`, because the expected share underestimates rare bright light.
         let expected_share = (throughput * roulette_weight).max_element();
         let survival = (expected_share / CERTAIN_SHARE).max(expected_share.sqrt()).min(MAX_SURVIVAL);
         if !(sampler.chance() < survival) {

@@ -23,8 +23,9 @@ pub struct Requirements {
     /// Whether a surface has an opacity below 1.
     pub alpha: bool,
     pub normal_maps: bool,
-    /// Whether the scene has a light of each kind that can emit. `textured_surfaces` is the part of `surfaces` whose
-    /// emission varies with a texture. Luminaires with faces count as surfaces, those without faces as points.
+    /// For each kind of light, whether the scene has a light of this kind that emits. `textured_surfaces` tells whether
+    /// the emission of a surface varies with a texture. Luminaires with faces count as surfaces, those without faces as
+    /// points.
     pub surfaces: bool,
     pub textured_surfaces: bool,
     pub points: bool,
@@ -341,10 +342,10 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::bsdf_params(material, colour, m, r)))
 }
 
-/// Returns an upper bound, over all directions, of the albedo with the BSDF parameters `s`.
+/// Returns an upper bound, within 0.003, of the albedo with the BSDF parameters `s` over all directions.
 fn albedo_bound(s: &BsdfParams, table: Option<&AlbedoTable>) -> Vec3 {
-    // Number of intervals between the cosines at which the albedo is evaluated. With 32 to 128 intervals, the bound is
-    // at most 0.003 below the largest albedo, less than the error of the table. [convention]
+    // Number of intervals between the cosines at which the albedo is evaluated. With 32 to 128 intervals, the result
+    // may be up to 0.003 below the largest albedo, which is less than the error of the table. [convention]
     const STEPS: usize = 64;
     let mut bound = Vec3::ZERO;
     for i in 0..=STEPS {

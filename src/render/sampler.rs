@@ -185,7 +185,8 @@ mod tests {
                 points.iter().for_each(|p| strata[(p.get(d) * 256.0) as usize] += 1);
                 assert!(strata.iter().all(|&c| c == 1), "dimension {d}");
             }
-            // Dimensions 0 and 1 form a (0, 2)-sequence: every elementary interval of area 1/256 contains one point.
+            // Dimensions 0 and 1 form a (0, 2)-sequence: each elementary interval of area 1/256 contains one of the
+            // first 256 points.
             for log in 0..=8 {
                 let (nx, ny) = (1usize << log, 256usize >> log);
                 let mut boxes = vec![0; 256];

@@ -370,7 +370,8 @@ impl Viewers {
         });
         let area_pdf = list.iter().flatten().map(|v: &Viewer| v.pdf * v.solid_angle_per_area).sum();
         let mut viewers = Self { list, area_pdf };
-        // Where surfaces touch, the pdfs are not finite. Then let only the path's own pixel use the vertex.
+        // Where surfaces touch, the area pdfs are not finite. If their sum is infinite or 0, let only the path's own
+        // pixel use the vertex.
         if !(area_pdf.is_finite() && area_pdf > 0.0) {
             viewers.list.iter_mut().flatten().for_each(|v| v.solid_angle_per_area = f32::from(v.number == owner));
             viewers.area_pdf = scattered.pdf;

@@ -20,11 +20,11 @@ const CAPACITY: usize = 1024;
 const MIN_POSITIONS: usize = 128;
 /// Share of the recorded positions that may lie beyond each side of the box. [judged on 3 scenes]
 const BEYOND: f64 = 1.0 / 128.0;
-/// The box is computed again if, on any axis, more than this share of the recorded coordinates lies outside. [judged on
-/// 3 scenes]
+/// The box is computed again if, on any axis, more than this share of the recorded coordinates lies outside the box.
+/// [judged on 3 scenes]
 const MAX_OUTSIDE: f64 = 1.0 / 16.0;
-/// Triangles count as near if they are within this distance of the box, relative to the largest coordinate of the
-/// scene. It exceeds the rounding error of a hit, `MARGIN` in `accel/node.rs`. [rounding]
+/// Triangles count as near if their distance from the box is at most this share of the largest coordinate of the scene.
+/// That distance exceeds the rounding error of a hit, `MARGIN` in `accel/node.rs`. [rounding]
 const MARGIN: f32 = 1.0 / (1 << 16) as f32;
 /// The structure is built only if it has at most `1 / MIN_RATIO` of the triangles of the scene, because a larger
 /// structure saves little time. [judged on 3 scenes]

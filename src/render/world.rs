@@ -129,8 +129,8 @@ impl World {
         self.any_see_through = true;
     }
 
-    /// Makes renders sample all lights alike, whether or not they reach the surfaces in view. Tests and benchmarks use
-    /// this function to measure how much learning helps.
+    /// Makes renders use one selector for all lights, whether or not the lights reach the surfaces in view. Tests and
+    /// benchmarks use this function to measure how much learning helps.
     pub fn disable_learning(&mut self) {
         self.lights.learns = false;
     }
@@ -146,8 +146,8 @@ impl World {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
     }
 
-    /// Returns a copy for the next pass. The copy seldom samples the lights that, by the light samples so far, do not
-    /// reach the surfaces in view. `None` if this copy stays in use (see [`Lights::learned`]).
+    /// Returns a copy for the next pass. The copy seldom samples the lights that are unlikely to reach the surfaces in
+    /// view, as far as the light samples so far tell. `None` if this copy stays in use (see [`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
         self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.with_vicinity()).transpose()
     }
@@ -305,7 +305,7 @@ impl World {
     fn is_blocked(&self, ray: &Ray, accept: impl Fn(&Hit) -> bool) -> bool {
         match self.vicinity.as_deref() {
             // The triangles of the vicinity belong to the scene, so a hit among them blocks the ray wherever the ray
-            // ends. If there is none, the rest of the scene can block the ray only if the ray ends outside the
+            // ends. Without such a hit, the rest of the scene can block the ray only if the ray ends outside the
             // vicinity.
             Some(near) if near.contains(ray.origin) => {
                 near.accel().occluded(ray, &accept)

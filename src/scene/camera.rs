@@ -16,7 +16,8 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// A camera at `position` that looks at `target`, rolled so that the world's +y points up in the image.
+    /// A camera at `position` that looks at `target`, rolled so that the world's +y points up in the image. If it looks
+    /// along the y axis, +x points right in the image. If `target` equals `position`, it looks along -z.
     pub fn look_at(position: Vec3, target: Vec3, fov_y: f32) -> Self {
         let forward = (target - position).normalize_or(Vec3::NEG_Z);
         let side = forward.cross(Vec3::Y).try_normalize().unwrap_or(Vec3::X);

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-/// Share of the points within the half-extent. The remaining points are ignored, because they may be outliers, such as
-/// a few objects left behind at the origin of a national grid. [convention]
+/// The half-extent of [`detail`] is chosen such that this share of the points lies within it. The remaining points are
+/// ignored, because they may be outliers, such as a few objects left behind at the origin of a national grid.
+/// [convention]
 const NEAR_SHARE: f64 = 0.75;
 
 /// Returns the median of the points on each axis, and a half-extent: [`NEAR_SHARE`] of the points differ from the

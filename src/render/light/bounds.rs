@@ -30,9 +30,10 @@ pub struct Bounds {
     /// `intensity` × cos θ. For narrower cones, the bound is scaled such that it is `intensity` at θ = 0.
     pub axis: Vec3,
     pub cone_angle: f32,
-    /// Whether all lights of the cluster also emit backwards.
+    /// Whether all lights of the cluster also emit on the side of -`axis`.
     pub two_sided: bool,
-    /// Sum, over the lights, of the largest luminous intensity in any direction, in cd, averaged over the channels.
+    /// Sum of the peaks of the lights, in cd. The peak of a light is its largest luminous intensity over all
+    /// directions, averaged over the channels.
     pub intensity: f32,
 }
 
@@ -119,14 +120,17 @@ pub struct BoundsLanes {
     centre: [Lanes; 3],
     /// Half-extents of the box, widened by the rounding error of its coordinates.
     half: [Lanes; 3],
-    /// Upper limit on 1 / squared distance, for receivers in or near the box: the reciprocal of the squared distance
-    /// from the centre to a corner.
+    /// Upper limit on 1 / squared distance: the reciprocal of the squared half-diagonal of the box. It takes effect for
+    /// receivers that are nearer to the centre of the box than the corners are.
     inverse_square: Lanes,
     axis: [Lanes; 3],
-    /// Allowance for the extent of the box: divided by the distance, it is added to the cosine at the emitters. It is
-    /// the half-extent of the box along the axis if the cone angle is 90°, and half the diagonal of the box otherwise.
+    /// Allowance for the extent of the box. Divided by the distance from the receiver to the centre of the box, it is
+    /// added to the bound of the cosine at the emitters. The allowance is the half-extent of the box along the axis if
+    /// the cone angle is 90°, and half the diagonal of the box otherwise.
     box_extent: Lanes,
-    /// -1 for two-sided lights, 1 for all others. The larger of the cosine and its product with this sign is used.
+    /// -1 for two-sided lights, 1 for all others. Let c be the cosine of the angle between the axis and the direction
+    /// to the receiver. The bound is computed from the larger of c and `back_sign` × c, which is |c| for two-sided
+    /// lights.
     back_sign: Lanes,
     /// Sine and cosine of `cone_angle` - 90° (`cone_rotation`), and the smallest cosine to the axis at which the bound
     /// is the full intensity (`full_cosine`; 2 if there is none).
@@ -172,8 +176,9 @@ impl BoundsLanes {
             lanes.cone_rotation[1][i] = cosine;
             let narrow = b.cone_angle < FRAC_PI_2;
             lanes.full_cosine[i] = if narrow { 2.0 } else { cosine };
-            // In a cone narrower than 90°, the bound on the axis is the intensity times cos(90° - `cone_angle`).
-            // Divide by this cosine, so that the bound is the full intensity there.
+            // In a cone narrower than 90°, the bound on the axis is the intensity times cos(90° - `cone_angle`). Divide
+            // by this cosine, so that the bound on the axis is the full intensity. For cones narrower than 2.9°, the
+            // divisor stays at 0.05.
             lanes.intensity[i] = b.intensity * scale / if narrow { cosine.max(0.05) } else { 1.0 };
         }
         lanes
@@ -200,7 +205,8 @@ impl BoundsLanes {
             let turned = cosine * self.cone_rotation[1][i] + sine * self.cone_rotation[0][i];
             let turned = if cosine >= self.full_cosine[i] { 1.0 } else { turned };
             let emitted = turned + self.box_extent[i] * inverse;
-            // Bound the cosine at the receiver, which is largest at a corner of the box.
+            // Bound the cosine at the receiver. The component of `d` along the normal is largest at a corner of the
+            // box; it is divided by the distance of the centre.
             let reached = n.x * d[0] + n.y * d[1] + n.z * d[2];
             let widened = m.x * self.half[0][i] + m.y * self.half[1][i] + m.z * self.half[2][i];
             let received = (reached + widened) * inverse;

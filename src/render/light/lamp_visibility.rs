@@ -36,9 +36,9 @@ const MIN_ARRIVAL: f64 = 0.003;
 /// power of two. [judged on 3 scenes]
 const UNLIKELY_SHARES: [f64; 2] = [0.03, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
-/// When the samples of a light's neighbours in the light tree serve to estimate whether its own samples arrive, each
-/// neighbour counts as at most this many samples. The counts of a neighbour with more samples, drawn and arrived, are
-/// scaled down by the same factor. [judged on 3 scenes]
+/// The probability that a light's samples arrive is estimated from the samples of its neighbours in the light tree.
+/// Each neighbour counts as at most this many samples. If it has more, its numbers of drawn and of arrived samples are
+/// divided by the same number. [judged on 3 scenes]
 const MAX_NEIGHBOUR_SAMPLES: f64 = 16.0;
 /// The importance of a likely light is multiplied by the square root of the probability that a sample of the light
 /// arrives. This factor is rounded to a power of two and is at least this value. [judged on 3 scenes]
@@ -126,11 +126,11 @@ impl Split {
     }
 }
 
-/// Returns the share of the light samples that the unlikely lights get together. `samples` is the number of samples
-/// already drawn from them, none of which arrived.
+/// Returns the share of the light samples that the unlikely lights get together, within `UNLIKELY_SHARES`. `samples` is
+/// the number of samples already drawn from these lights, none of which arrived.
 ///
-/// The share with the smallest variance is proportional to the square root of the probability that a sample arrives.
-/// That probability is at most about `1 / samples`.
+/// Let p be the probability that a sample of these lights arrives. The variance of the image is smallest if the share
+/// is proportional to √p. As none of `samples` samples has arrived, p is at most about 1 / `samples`.
 pub fn unlikely_share(samples: u64) -> f64 {
     let [min, max] = UNLIKELY_SHARES;
     let root = f64::from(samples.max(1).ilog2() / 2).exp2();
@@ -141,7 +141,7 @@ pub fn unlikely_share(samples: u64) -> f64 {
 /// or 0 if the light is unlikely.
 ///
 /// - p is estimated from the light's own samples and a prior, which counts as one further sample.
-/// - √p minimises the variance if p is the same for all receivers.
+/// - √p minimises the variance of the estimate if p is the same for all receivers.
 /// - √p is rounded to a power of two and is at least [`MIN_WEIGHT`]. Due to the rounding, one sample more or less
 ///   seldom changes the factors, and lights whose samples nearly all arrive keep the factor 1.
 pub fn weights(lights: &Inventory, tree: &LightTree, sample_counts: &[SampleCounts]) -> Result<Vec<f32>> {

@@ -16,8 +16,8 @@ pub struct LuminousSurfaces {
 }
 
 impl LuminousSurfaces {
-    /// Finds the lamps: emissive triangles that share a corner belong to one lamp, and so do all faces of a luminaire.
-    /// `pieces` is the number of pieces into which the triangles are divided.
+    /// Finds the lamps: emissive triangles with a corner at the same position belong to one lamp, and so do all faces
+    /// of a luminaire. `pieces` is the number of pieces into which the triangles are divided.
     pub fn new(emitters: &Emitters, pieces: usize) -> Result<Self> {
         let count = emitters.emitters.len();
         let mut corners = try_with_capacity(3 * count)?;

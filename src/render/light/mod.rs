@@ -107,7 +107,8 @@ impl Lights {
             Some((sampler, mean)) => (Some(Arc::new(sampler)), mean),
             None => (None, 0.0),
         };
-        // Take as the power of the environment its flux through the surface of a sphere around the scene.
+        // The power of the environment is its flux into a sphere of radius r around the scene: π L × 4 π r², with the
+        // mean luminance L.
         let r2 = f64::from(radius).powi(2).max(f64::MIN_POSITIVE);
         let power = mean * PI * 4.0 * PI * r2;
         let piece_flux = emitters.power;
@@ -277,9 +278,9 @@ impl Lights {
         })
     }
 
-    /// Returns the solid-angle pdf with which [`Lights::sample`] draws a point of an emitter. The point lies along the
-    /// unit vector `direction` at `distance`; its emission and texture coordinates are those that
-    /// [`Emitters::emission`] returns.
+    /// Returns the solid-angle pdf with which [`Lights::sample`] draws a point of an emitter; 0 if no piece contains
+    /// the point. The point lies at `distance` from the receiver, along the unit vector `direction`. `emission` and
+    /// `uv` are the emission and the texture coordinates that [`Emitters::emission`] returns for the point.
     pub fn surface_pdf(
         &self,
         receiver: &Receiver,

@@ -161,7 +161,8 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
             }
             LightSource::Surface { .. } => {
                 counts[6] += 1.0;
-                // The mean of 1 / pdf over all n samples is the solid angle of the lamp.
+                // A sample on the lamp counts as 1 / pdf, and any other sample as 0. The mean over all n samples is the
+                // solid angle of the lamp.
                 surface += f64::from(1.0 / sample.pdf) / f64::from(n);
             }
             LightSource::Environment => {
@@ -176,8 +177,8 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
     stated[8] = counts[8];
     stated[6] = f64::from(n) - stated.iter().sum::<f64>();
     assert_follows(&stated, &counts, 1, "kinds of lights");
-    // The lamp is a square of 1 m² at a height of 2 m, slightly off centre. Each sample either hits the lamp or does
-    // not (a Bernoulli trial).
+    // The lamp is a square of 1 m² at a height of 2 m, slightly off centre. A sample hits the lamp with the probability
+    // `share` (a Bernoulli trial), from which the standard error follows.
     let (expected, share) = (solid_angle_of_lamp(), counts[6] / f64::from(n));
     let error = expected * ((1.0 - share) / (share * f64::from(n))).sqrt();
     assert!((surface - expected).abs() < 4.0 * error + 1e-3 * expected, "{surface} ± {error}, expected {expected}");
@@ -231,7 +232,8 @@ fn near_lamps_are_preferred_to_far_ones_and_those_behind_are_left_out() {
         let around = (0..1600).filter(|&i| (bounds[i].low - position).length() < 9.0);
         around.map(|i| tree.pmf(&receiver, i)).sum()
     };
-    // E = ∫ h² / (h² + r²)² dA, so 72 / 81 of the light comes from within r = √72 m at a height of h = 3 m.
+    // A large ceiling at a height of h gives E ∝ ∫ h² / (h² + r²)² dA. The share r² / (h² + r²) of E comes from within
+    // the radius r: 72 / 81 for h = 3 m and r = √72 m.
     assert!((near(Vec3::Y) - 72.0 / 81.0).abs() < 0.05, "{}", near(Vec3::Y));
     assert_eq!(near(Vec3::NEG_Y), 0.0);
     let from_above = Receiver { position: position + Vec3::Y * 4.0, normal: Vec3::NEG_Y };
@@ -383,7 +385,7 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
         let measured = measure(over_floor(meshes, materials));
         assert_close(measured, expected, 1e-5, "triangles");
         // About a third of the lights face away from the floor, so some of the light samples carry no light. The
-        // measured error is 1.5 %.
+        // standard error is 1.5 % of the irradiance.
         assert!(measured.1 < 0.02 * expected, "{measured:?}");
     }
 }
@@ -435,8 +437,8 @@ fn textured_lamps_light_as_the_polygons_of_their_texels() {
             let texel = Vec2::new(width / 37.0, width / 23.0);
             let place = corner + Vec3::new(x as f32 * texel.x, 0.0, y as f32 * texel.y);
             let emission = f64::from(image.pixel(x, y)[0]) * 1e6;
-            // For texels far smaller than their distance, the closed form suffers from cancellation; use the solid
-            // angle instead.
+            // For texels far smaller than their distance, the closed form suffers from cancellation. These texels lie
+            // 1 m straight above the floor's centre, so each gives an irradiance of emission × area.
             expected += emission
                 * if width < 0.1 {
                     f64::from(texel.x) * f64::from(texel.y)

@@ -98,8 +98,8 @@ impl LightTree {
         let mut clusters = try_vec(lights.len(), Cluster::default())?;
         let root = divide(&mut items, &mut clusters, 0, 0);
         tree.slots = try_vec(lights.len(), NONE)?;
-        // Scale intensities by their sum, and limit distances relative to the scene, so that importances cannot
-        // overflow.
+        // Scale intensities by their sum, so that importances cannot overflow. For the same reason, distances count as
+        // at least 1e-9 times the radius of the bounds of all lights, and as at least 1e-15.
         let whole = Bounds::union(lights);
         tree.nearest = (whole.radius() * 1e-9).powi(2).max(1e-30);
         tree.add(&items, &clusters, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
@@ -114,7 +114,8 @@ impl LightTree {
             self.slots[item.light as usize] = slot;
             return (LIGHT | item.light, item.bounds);
         }
-        // Divide the most expensive part until there are eight parts, or all parts are single lights.
+        // Divide the part with the largest split heuristic in two. Repeat this until there are eight parts, or all
+        // parts are single lights.
         let mut parts = vec![cluster];
         while parts.len() < LANES {
             let divisible = (0..parts.len()).filter(|&i| parts[i] & LIGHT == 0);
@@ -274,7 +275,7 @@ impl Extent {
     }
 
     /// Returns the split heuristic: intensity × squared diagonal × a factor for the spread of directions, from 1 (all
-    /// parallel) to 4 (all directions).
+    /// parallel) to 4 (all directions). Returns 0 without lights.
     fn cost(&self) -> f32 {
         if self.count == 0 {
             return 0.0;

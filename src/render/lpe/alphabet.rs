@@ -78,8 +78,8 @@ impl Alphabet {
         class(Vec::new());
         let class_of_mesh: Vec<u32> = scene.meshes.iter().map(|mesh| class(keep_named(&names(mesh)))).collect();
         // Number the events of the punctual lights, the environment and the named lamps. Lights of equal kinds and
-        // labels share an event. Each kind of light has an event without labels, even if no such light exists, for the
-        // same reason as above.
+        // labels share an event. Each kind of light has an event without labels, even if no such light exists: whether
+        // any path can match an expression must not depend on the lights of the scene.
         let mut by_labels = BTreeMap::new();
         let mut light = |kinds: u8, labels: Vec<String>| {
             *by_labels.entry((kinds, labels.clone())).or_insert_with(|| {

@@ -48,8 +48,8 @@ pub struct PathTracker<'a> {
     panes: Vec<Pane>,
     /// Light of the path so far, for each initial state and each list of expressions.
     sums: SparseSums,
-    /// Light that has arrived since all states became absorbing; all of it has the light event `rest_light`.
-    /// `flush_rest` distributes it to the components.
+    /// Light that has arrived since all states became absorbing and is not yet in `sums`. All of it has the light event
+    /// `rest_light`. `flush_rest` adds it to the sums of the components.
     rest: Vec3A,
     rest_light: usize,
 }

@@ -70,8 +70,8 @@ impl fmt::Display for Part {
     }
 }
 
-/// Returns the start of piece number `piece` when `size` is divided into `count` pieces of about equal size. If a piece
-/// has at least `4 * unit`, the start is rounded down to a multiple of `unit`.
+/// Returns the start of piece number `piece` when `size` is divided into `count` pieces of about equal size; `size` if
+/// `piece` is `count`. If a piece has a size of at least `4 * unit`, the start is rounded down to a multiple of `unit`.
 fn bound(size: usize, count: u32, piece: u32, unit: usize) -> usize {
     let exact = (size as u64 * u64::from(piece) / u64::from(count)) as usize;
     if exact == size || size / (count as usize) < 4 * unit { exact } else { exact / unit * unit }

@@ -223,10 +223,10 @@ fn on_an_even_wall_noise_goes_and_the_mean_stays() {
     assert!(output.image.data.iter().all(|&v| v == 2.0) && output.bias == 0.0);
     let noisy = flat(64, 64, 0.5, |_| 2.0);
     let output = smoothed(&noisy, &wall, 1.0);
-    // The variance of the mean of both halves is 0.125.
+    // Before the filter, the mean of both halves has a variance of 0.5² / 2 = 0.125 in each pixel.
     let square = mean(&output.image.data.iter().map(|v| (v - 2.0) * (v - 2.0)).collect::<Vec<f32>>());
     assert!(square < 0.125 / 40.0, "{square}");
-    // The standard error of the mean of the picture is 0.0055.
+    // The filter moves the mean of the picture by less than the standard error of this mean, √(0.125 / 64²) = 0.0055.
     let moved = mean(&output.image.data) - mean(&noisy.mean().data);
     assert!(moved.abs() < 0.0055, "{moved}");
     assert!(output.bias < 0.02, "{}", output.bias);

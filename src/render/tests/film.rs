@@ -90,7 +90,8 @@ fn intervals_hold_the_truth_and_the_errors_are_those_of_the_image() {
         let stated = (stated_relative / films.len() as f64).sqrt();
         relative_ratios.push(stated / measured);
     }
-    // The stated error converges from above: with few paths, the errors of dark pixels are overestimated.
+    // With more paths, the stated error approaches the measured error from above: with few paths, the errors of dark
+    // pixels are overestimated.
     for (ratio, max_ratio) in relative_ratios.iter().zip([1.3, 1.2, 1.1]) {
         assert!((0.95..max_ratio).contains(ratio), "stated over measured: {relative_ratios:?}");
     }

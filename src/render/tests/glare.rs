@@ -38,8 +38,9 @@ fn panel() -> Luminaire {
 const EYE: Eye = Eye { position: Vec3::new(3.0, 1.2, 7.5), direction: Vec3::NEG_Z };
 
 /// A Lambertian panel of 3000 lm and area A = 0.36 m² hangs 3 m ahead of the eye and 1.5 m above it, at a distance of
-/// r = √11.25 m. By hand: the luminance is L = 3000 / π / A, the solid angle is ω = A cos γ / r², and Guth's position
-/// index p is that of the angles τ = 0 and σ = 26.565°.
+/// r = √11.25 m. By hand: the luminance is L = 3000 / π / A. The solid angle is ω = A cos γ / r², with cos γ = 1.5 / r
+/// at the panel. Guth's position index p is that of the angles τ = 0 (from the vertical) and σ = 26.565° (from the line
+/// of sight).
 #[test]
 fn a_panel_rates_as_computed_by_hand() {
     let rating = rated(room(panel(), &[Vec3::new(3.0, 2.7, 4.5)]), EYE, 1024);
@@ -162,8 +163,8 @@ fn a_room_in_map_coordinates_rates_as_at_the_origin() {
 fn hidden_parts_do_not_glare() {
     let at = Vec3::new(3.0, 2.7, 4.5);
     let whole = rated(room(panel(), &[at]), EYE, 16).sources[0];
-    // Place a screen between the eye and the panel. From x = 1, a width of 2 hides the left half of the panel, and a
-    // width of 4 hides the whole panel.
+    // Place a screen between the eye and the panel, from x to x + `width` in metres. From x = 1, a width of 2 hides the
+    // left half of the panel, and a width of 4 hides the whole panel.
     let screened = |x: f32, width: f32| {
         let mut scene = room(panel(), &[at]);
         let screen = Mesh::parallelogram(Vec3::new(x, 1.0, 5.5), Vec3::X * width, Vec3::Y * 1.9, 0);
@@ -209,7 +210,8 @@ fn limits_have_clear_answers() {
     shining.materials.push(matt(0.0, 500.0));
     shining.meshes.push(Mesh::parallelogram(Vec3::new(2.0, 2.5, 3.0), Vec3::X, Vec3::Z, 1));
     assert!(rated(shining, EYE, 1024).unrated_lux > 1.0);
-    // A panel seen edge-on has no projected area. It counts as rated even if it shines towards the eye.
+    // A panel seen edge-on has no projected area and is not among the sources. Its light does not count as unrated,
+    // even if it shines towards the eye.
     let even = Luminaire { gammas: vec![0.0, 180.0], candela: vec![300.0; 2], ..panel() };
     let edge_on = rated(room(even, &[Vec3::new(3.0, EYE.position.y, 4.5)]), EYE, 1024);
     assert!(edge_on.sources.is_empty() && edge_on.unrated_lux == 0.0 && edge_on.background > 0.0, "{edge_on:?}");

@@ -35,8 +35,8 @@ fn lux(scene: Scene, [origin, across, down, normal]: [Vec3; 4], cells: usize) ->
 
 const FLOOR: [Vec3; 4] = [Vec3::new(-2.0, 0.0, -2.0), Vec3::new(4.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 4.0), Vec3::Y];
 
-/// A luminaire of uniform intensity equals a point light. A Lambertian luminaire, whose intensity is I cos γ, lights a
-/// plane by `I cos⁴ γ / h²`.
+/// A luminaire of uniform intensity lights a plane like a point light. A Lambertian luminaire of intensity I cos γ, at
+/// a height of h above the plane, gives the illuminance `I cos⁴ γ / h²`.
 #[test]
 fn uniform_and_lambertian_luminaires_agree_with_closed_forms() {
     let even = b"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 10\n0 180\n0\n250 250\n";

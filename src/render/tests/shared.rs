@@ -111,8 +111,8 @@ fn shared_paths_bring_the_same_light() {
             }
         }
     }
-    // The 720 deviations follow Student's t with at least 62 degrees of freedom. The probability that any of them
-    // exceeds 6 is about 1e-4.
+    // The 720 deviations, in standard errors, follow Student's t with at least 62 degrees of freedom. The probability
+    // that any of them exceeds 6 is about 1e-4.
     assert!(tests == 720 && worst < 6.0, "{worst}");
 }
 

@@ -26,7 +26,7 @@ const FAR: f64 = 4.0;
 /// little. [convention]
 const MAX_CORNERS: usize = 1 << 16;
 /// If more corners than this are collected, only every n-th one is used, so that at least this many and fewer than
-/// twice as many remain. They fit into the library's small memory reserve. [convention]
+/// twice as many remain. The remaining corners fit into the library's small memory reserve. [convention]
 const SAMPLES: usize = 4096;
 
 /// Returns the new origin of the scene, in metres; zero if the scene lies near the file's origin. `world` converts

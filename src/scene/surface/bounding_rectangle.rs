@@ -11,7 +11,8 @@ const COS_SNAP: f64 = 0.999_847_695;
 /// is 3.4 % at the 1° of `COS_SNAP`. So any value from 1e-5, above the rounding of f32, to 0.03 gives the same result
 /// for rectangles. [convention]
 const MIN_SAVING: f64 = 1e-3;
-/// A plane is a wall if the vertical component of its normal is below this value, the cosine of 45°. [convention]
+/// A plane is a wall if the magnitude of the vertical component of its unit normal is below this value, the cosine of
+/// 45°. [convention]
 const WALL: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 pub struct BoundingRectangle {

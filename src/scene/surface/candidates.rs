@@ -1,11 +1,11 @@
 //! Lists the objects and materials of a scene as candidates for the surface that will carry the lights: their area,
 //! height and direction, and how much each resembles a ceiling.
 //!
-//! A ceiling is level, lies high in the scene and covers much of the scene's floor plan. The score is the product of
-//! three shares: the share of the area that is level, the share of the scene's floor plan that the level area covers,
-//! and the square of the area's height relative to the scene's height. A name that says "ceiling" raises the score
-//! (`NAMED`). Only the order of scores has a meaning. Each triangle is read once, so that large scenes are listed
-//! quickly.
+//! A ceiling is level, lies high in the scene and covers much of the scene's floor plan. The score is l c h². Here l is
+//! the level share of the candidate's area. c is the level area as a share of the scene's floor plan, at most 1. h is
+//! the mean height of the level area above the scene's lowest point, as a share of the scene's height. A name that says
+//! "ceiling" raises the score (`NAMED`). Only the order of scores has a meaning. Each triangle is read once, so that
+//! large scenes are listed quickly.
 //!
 //! Not modelled: whether a surface is visible from the room. The upper side of a roof counts as much as its lower
 //! side.
