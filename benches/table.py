@@ -18,13 +18,13 @@ TEN = "<!-- headlines: written by `make bench` -->\n", "<!-- end of headlines --
 HEADLINES = [
     ("transfer.demo.seconds", "a whole lighting transfer at final quality, 640 x 360 pixels, two threads", "{:.1f} s"),
     ("peak.transfer_demo.mb", "peak memory of this transfer", "{:.0f} MB"),
-    ("segment.iou.ours", "overlap (IoU) of masks from strokes with the true masks", "{:.2f}"),
-    ("vp.yud_dev.auc10", "accuracy of vanishing points on York Urban (area under the recall curve up to 10 degrees)", "{:.0f} %"),
+    ("segment.iou.ours", "overlap of masks from strokes with the true masks (IoU; 1 is perfect)", "{:.2f}"),
+    ("vp.yud_dev.auc10", "share of directions (of walls, streets) found in the York Urban photos, mean over tolerances up to 10 degrees", "{:.0f} %"),
     ("emission.2048.seconds", "synthesis of an emissive texture of 2048 x 2048 texels", "{:.2f} s"),
     ("relight.to_1pct.seconds", "solving for the strength of the lights, to 1 %", "{:.2f} s"),
-    ("render.time_to_1pct.kitchen.vs_cycles", "time of Cycles to render a kitchen to an error of 1 %, over luxfer's", "{:.1f}"),
-    ("render.time_to_1pct.kitchen.vs_mitsuba_llvm", "time of Mitsuba 3 (LLVM) for this, over luxfer's", "{:.1f}"),
-    ("render.interval_coverage", "pixels whose stated 95 % interval contains the true radiance", "{:.1f} %"),
+    ("render.time_to_1pct.kitchen.vs_cycles", "time in which Cycles renders a kitchen down to 1 % noise, as a multiple of luxfer's time", "{:.1f}"),
+    ("render.time_to_1pct.kitchen.vs_mitsuba_llvm", "time in which Mitsuba 3 (LLVM) does this, as a multiple of luxfer's time", "{:.1f}"),
+    ("render.interval_coverage", "pixels whose true brightness lies within the error that luxfer states for them (95 % is promised)", "{:.1f} %"),
     ("stylit.full.seconds", "a stylisation of 1200 x 912 pixels with four guides", "{:.1f} s"),
 ]
 
