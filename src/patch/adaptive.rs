@@ -1,14 +1,14 @@
 //! A vote that blends where paint is smooth and keeps whole exemplar pixels where paint is rough.
 //!
-//! Where patches disagree, the mean of their pixels loses texture, and the choice of one of them has steps along the
-//! seams: blocks in smooth paint, and staircases along silhouettes. This vote takes `mean + t (choice - mean)`, with
-//! the share t that gives the picture as much fine detail as the exemplar has.
+//! Where patches disagree, the mean of their pixels loses texture. The choice of one of their pixels instead leaves
+//! steps along the seams: blocks in smooth paint, and staircases along silhouettes. This vote takes
+//! `mean + t (choice - mean)`. The share t is such that the picture has as much fine detail as the exemplar.
 //!
-//! Fine detail is the power of the finest octave: the sum of squares, over a window, of the difference between an
-//! image and its 3 × 3 binomial mean. Let M be this difference for the mean, and D for (choice - mean). The power of
-//! the blend is `Σ|M|² + 2t ΣM·D + t² Σ|D|²`. Equating it with the exemplar's power around the sources of the chosen
-//! pixels gives a quadratic equation for t. Steps that the exemplar lacks make t smaller; texture that the mean loses
-//! makes t greater. The window holds all patches over a pixel, because these patches form the mean.
+//! Fine detail is the power of the finest octave: the sum of squares, over a window, of the difference between an image
+//! and its 3 × 3 binomial mean. Let M be this difference for the mean, and D for (choice - mean). The power of the
+//! blend is `Σ|M|² + 2t ΣM·D + t² Σ|D|²`. Equating it with the exemplar's power around the sources of the chosen pixels
+//! gives a quadratic equation for t. Steps that the exemplar lacks make t smaller; texture that the mean loses makes t
+//! greater. The window holds all patches over a pixel, because these patches form the mean.
 
 use super::ballot::{Ballot, Candidate, common_offset};
 use crate::error::Result;

@@ -142,8 +142,8 @@ impl Search<'_> {
 impl Search<'_> {
     /// Lets each active patch continue a neighbour's match if that lowers the patch's cost. The cost is the distance,
     /// plus `seam` for each of the four neighbours whose match the patch does not continue. Runs one forward and one
-    /// backward round of iterated conditional modes (Besag 1986). It searches for no new matches, and the sum of
-    /// distances and seams of a tile never rises.
+    /// backward round of iterated conditional modes (Besag 1986). No other matches are tried, and the sum of distances
+    /// and seams of a tile never rises.
     pub fn join(&self, field: &mut Field, seam: u32, job: Job, active: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
         let tiles = exec::map(columns * rows, job, |t| {

@@ -218,7 +218,7 @@ mod tests {
         assert!((source.position - 1.0).abs() < 1e-3 && (rating.background - 100.0).abs() < 1e-9);
         let expected = 8.0 * (0.25 / 100.0 * 1e8 * omega).log10();
         assert!((rating.ugr - expected).abs() < 1e-2, "{} {expected}", rating.ugr);
-        // Two equal lamps rate 8 log10(2) higher than one, up to the difference of their positions.
+        // Two equal lamps rate 8 log10(2) higher than one, up to the difference of their position indices.
         let mut two = view(200, [60, 90], 20, 10_000.0);
         let other = view(200, [120, 90], 20, 10_000.0);
         two.data.iter_mut().zip(&other.data).for_each(|(a, b)| *a = a.max(*b));

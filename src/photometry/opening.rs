@@ -157,8 +157,8 @@ fn box_faces(size: DVec3, heights: [f64; 4], direction: DVec3) -> Vec<Face> {
     (0..3).map(face).filter(|face| face.projected_area(direction) > 0.0).collect()
 }
 
-/// Returns the end of a cylinder that faces `direction`, and a rectangle with the same projected area as the
-/// cylinder's side.
+/// Returns two faces that stand for a cylinder seen from `direction`: the end that faces the observer, and a rectangle
+/// with the same projected area as the cylinder's side. A face without projected area is left out.
 fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec<Face> {
     let [along, first, second] = [axis, (axis + 1) % 3, (axis + 2) % 3].map(|i| DVec3::AXES[i]);
     let end = along * (length / 2.0 * direction[axis].signum());

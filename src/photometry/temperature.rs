@@ -110,7 +110,8 @@ pub fn fit(response: DVec3, background: DVec3, target: DVec3) -> Option<Fit> {
     Some(Fit { kelvin, luminance, achieved, delta_e: colour::delta_e_from(target, achieved) })
 }
 
-/// Returns the mired value that minimises `f`, by a scan and then a golden-section search around its minimum.
+/// Returns the mired value that minimises `f`: scans the range, then searches by golden sections between the neighbours
+/// of the best scanned value.
 fn search(f: impl Fn(f64) -> f64) -> f64 {
     let (low, high) = (1e6 / MAX_KELVIN, 1e6 / MIN_KELVIN);
     let at = |i: usize| low + (high - low) * i as f64 / SCAN as f64;

@@ -84,8 +84,9 @@ fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
 }
 
 /// If a stage stops at a target error, the number of its paths is limited to this multiple of the expected number. The
-/// error falls with the square root of the number of paths, so any value from 2 to 8 gives the same result if the error
-/// was predicted to within a factor of 1.4; `make bench ONLY=plan` prints how well it is. [convention]
+/// error falls with the square root of the number of paths. So any value from 2 to 8 gives the same result if the error
+/// was predicted to within a factor of 1.4 = √2; `make bench ONLY=plan` prints how accurate the predictions are.
+/// [convention]
 const MAX_COST: f64 = 4.0;
 /// A stage with a time budget may take at most this many times the expected time. The bench prints the share of stages
 /// whose time is within a quarter of the prediction. [bench plan]

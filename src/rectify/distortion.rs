@@ -2,11 +2,11 @@
 //! "Straight lines have to be straight").
 //!
 //! Model: a lens shows at radius r the point that an ideal lens shows at r (1 - k r² / R²), where R is half the image
-//! diagonal. Let t run along a straight line, and let y be the distance from the centre across it. The line then
-//! appears as a curve y(t) along which `y (1 - k (y² + t²) / R²)` is constant. If the line passes the centre at
-//! distance d, its curvature is `y″ = 2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient of the curve, y″ / 2,
-//! divided by d / R², therefore yields one estimate of k per traced segment. A robust mean over the many lines of a
-//! room rejects mouldings and vaults, which are curved themselves.
+//! diagonal. Take coordinates from the image centre, t along a straight line and y across it. The line then appears as
+//! a curve y(t) along which `y (1 - k (y² + t²) / R²)` is constant. If the line passes the centre at distance d, its
+//! curvature is `y″ = 2 k d / R² / (1 - 3 k d² / R²)`. The quadratic coefficient of the curve, y″ / 2, divided by
+//! d / R², therefore yields one estimate of k per traced segment. A robust mean over the many lines of a room rejects
+//! mouldings and vaults, which are curved themselves.
 //!
 //! A line of several pieces (`edge_lines`) is used only if a single parabola fits all of them. The tiles of a ceiling
 //! sag between the bars that carry them, so each edge of a tile is curved even without any lens distortion.

@@ -88,7 +88,8 @@ fn gather_as<F: PixelLanes>(source: &Image, taps: &Taps, is_sharp: bool, is_shea
     }
 }
 
-/// Clamps `value` to the range of the samples, so that a bright lamp has no dark ring around it; NaN stays NaN.
+/// Clamps `value` to the range of the samples that the filter reads. Otherwise the negative weights of the filter would
+/// put a dark ring around a bright lamp. NaN stays NaN.
 #[inline(always)]
 fn within(value: Vec4, low: Vec4, high: Vec4) -> Vec4 {
     let raised = Vec4::select(value.cmplt(low), low, value);

@@ -13,8 +13,9 @@ use std::f64::consts::PI;
 /// Number of angle bins of the accumulator over half a turn: one per half degree.
 const ANGLES: usize = 360;
 
-/// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side. `MAX_LINES`: maximum
-/// number of lines returned. The bench prints the accuracy from Hough lines. [bench vp]
+/// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side in pixels; 8 votes if
+/// that is fewer. `MAX_LINES`: maximum number of lines returned. The bench prints the accuracy from Hough lines.
+/// [bench vp]
 const MIN_VOTES: f64 = 0.06;
 const MAX_LINES: usize = 600;
 

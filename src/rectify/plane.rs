@@ -39,9 +39,9 @@ impl Plane {
         (depth > 1e-9).then(|| DVec2::new(self.right.dot(ray), self.down.dot(ray)) / depth)
     }
 
-    /// Side, in plane units, of a square with the same area as the patch of the plane that a pixel covers. It is the
-    /// square root of the determinant of the Jacobian from pixels to plane coordinates, `1 / (f² (n · ray)³)`, where
-    /// `ray` has z = 1.
+    /// Side, in plane units, of a square with the same area as the patch of the plane that a pixel covers. This is
+    /// √det J, where J is the Jacobian from pixels to plane coordinates, and det J = 1 / (f² (n · ray)³). `ray` has z =
+    /// 1.
     pub fn pixel_side(&self, pixel: DVec2) -> f64 {
         self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal
     }

@@ -59,7 +59,7 @@ fn warps_are_means_over_the_footprints_of_pixels() {
     };
     // The maps are the identity, a rotation, and tilts and reductions, for which the filter uses pyramid levels and
     // divides the footprint of a pixel into several parts. The last number is the minimum peak signal-to-noise ratio in
-    // dB. It is the ratio to the mean of the drawing over the footprint, from 12 × 12 samples; in the first case, these
+    // dB. The true signal is the mean of the drawing over the footprint, from 12 × 12 samples; in the first case, these
     // samples limit the ratio.
     for (turn, scale, tilt, min_decibels) in [
         (0.0, 1.0, DVec2::ZERO, 50.0),
