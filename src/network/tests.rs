@@ -366,7 +366,8 @@ fn files_that_ask_for_more_than_there_is_are_refused() {
         let (w, t) = (w.constant("a", &Tensor::integers(vec![], vec![0])), Tensor::integers(vec![], vec![i64::MAX]));
         w.constant("b", &t).constant("c", &Tensor::integers(vec![], vec![1])).node("Range", &["a", "b", "c"], "y", &[])
     });
-    // A missing weight, a product of 2^15 × 2^15 numbers (4 GiB), and a size that doubles with each node.
+    // Each of these gives an error: a missing weight, a product of 2^15 × 2^15 numbers (4 GiB), and a size that doubles
+    // with each node.
     with(&|w| w.node("Add", &["x", "nothing"], "y", &[]));
     with(&|w| {
         let column = Tensor::floats(vec![1 << 15, 1], vec![1.0; 1 << 15]);

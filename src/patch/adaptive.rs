@@ -39,7 +39,7 @@ pub(super) fn vote(out: &mut Image, ballot: &Ballot, job: Job, wanted: impl Fn(u
     job.check()
 }
 
-/// A part of the picture.
+/// A rectangle of the picture, given by its columns `x` and rows `y`, that is voted on at once.
 struct Tile<'a> {
     ballot: &'a Ballot<'a>,
     /// Size of the whole picture.

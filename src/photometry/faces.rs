@@ -277,9 +277,9 @@ mod tests {
         })
     }
 
-    /// Flat faces have exactly the projected areas of the closed forms, and curved faces have them on average. The
-    /// smallest width of a polygon of 64 sides is smaller than the width of a circle of equal mean width, by the share
-    /// (π / 64)² / 3 = 8.03e-4.
+    /// In every direction, flat faces have exactly the projected areas of the closed forms. Curved faces have them on
+    /// average over all directions. In single directions they are off by at most the share (π / 64)² / 3 = 8.03e-4: a
+    /// polygon of 64 sides is narrower by this share, in its narrowest direction, than a circle of equal mean width.
     #[test]
     fn faces_have_the_projected_areas_of_their_opening() {
         for (size, heights, tolerance) in [

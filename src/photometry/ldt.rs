@@ -9,7 +9,8 @@ use std::fmt::Write;
 
 /// Maximum number of lamp sets in a file.
 const MAX_SETS: usize = 20;
-/// Number of room indices for which a file lists direct ratios.
+/// Number of direct ratios in a file, one for each of the standard room indices. A direct ratio is the share of the
+/// flux that reaches the working plane directly; a room index stands for the proportions of a room.
 const ROOM_INDICES: usize = 10;
 
 struct Rows<'a, I> {

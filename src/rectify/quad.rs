@@ -37,7 +37,7 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
     let finest_pixel_side = seen[seen.len() / 50].0;
     let max_pixel_side = finest_pixel_side * max_magnification;
     seen.truncate(seen.partition_point(|s| s.0 <= max_pixel_side).max(1));
-    // Widen by half a pixel, since only pixel centres were counted.
+    // Widen the bounding box by half of the finest pixel side, since only pixel centres were counted.
     let rim = DVec2::splat(finest_pixel_side / 2.0);
     let (low, high) =
         seen.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), (_, q)| (low.min(*q), high.max(*q)));

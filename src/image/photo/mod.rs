@@ -41,8 +41,8 @@ const LENS: f64 = 0.65;
 /// exposure that becomes the sRGB code 118. The linear value of this code is 0.181, so white corresponds to 10 / 0.181
 /// = 55 lx s instead of 78.
 ///
-/// Upper limit: with a recommended exposure index, the manufacturer chooses the headroom; one stop of headroom is
-/// assumed. [convention]
+/// Upper limit: a recommended exposure index is any value that the manufacturer chooses. White is assumed to be at most
+/// one stop (a factor of 2) brighter than with a saturation-based speed. [convention]
 const WHITE_RANGE: [f64; 2] = [10.0 / 0.181 / SATURATION, 2.0];
 
 /// The metadata of a photo, referred to the pixels of the photo as it was loaded.
@@ -70,7 +70,7 @@ pub struct Luminance {
 
 impl PhotoMetadata {
     /// Converts the metadata of a file to the metadata of its photo. `width` and `height` may be those of the photo
-    /// before or after it is turned upright.
+    /// before or after it is turned upright: exchanging them does not change the focal length.
     pub(super) fn new(exif: &Exif, width: usize, height: usize, colour: FileColour) -> Self {
         Self {
             orientation: exif.orientation,

@@ -104,7 +104,8 @@ impl Shape {
     }
 }
 
-/// Finds the largest regions of a mask that do not touch the border of the photo; at most [`MAX_SHAPES`] of them.
+/// Finds the largest regions of a mask, at most [`MAX_SHAPES`]. Regions that touch the border of the photo or have
+/// fewer than [`MIN_PIXELS`] pixels are left out.
 pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
     #[derive(Clone, Copy, Default)]
     struct Sums {
