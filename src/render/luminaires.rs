@@ -29,10 +29,10 @@ const GAP_OFFSETS: f64 = 8.0;
 /// opening's largest projected area along an axis of the luminaire. Otherwise a flat opening would have infinite
 /// luminance along its plane, where its projected area is 0. [rounding]
 const EDGE_ON: f64 = 1e-6;
-/// Steps in degrees of C and γ of the grid of directions in which luminances are computed to bound the intensities of
-/// patches. [convention]
+/// Steps in degrees, in C and in γ, of a grid of directions. The bounds on the intensities of patches are computed from
+/// the luminances in these directions. [convention]
 const STEP: [usize; 2] = [15, 5];
-/// For light sampling, the intensity of a patch is at least this share of the intensity of the brightest patch of the
+/// For light sampling, the bound on the intensity of a patch is at least this share of the largest such bound of the
 /// luminaire. [convention]
 const MIN_SHARE: f64 = 0.01;
 /// Let L be the largest luminance of a flat patch, A its area and I its largest intensity, over all directions. If L A

@@ -90,9 +90,9 @@ pub struct SurfacePoint {
 }
 
 /// Adds one sample of the irradiance (lux) at a point to a sink. `sample` is the index of the sample; each `seed`
-/// selects an independent sequence of samples. The samples of one seed are stratified: their mean converges faster
-/// than that of independent samples, and best at powers of two. A point that is not on a surface of the scene, or that
-/// lies on a degenerate triangle, adds nothing.
+/// selects an independent sequence of samples. The samples of one seed are stratified: their mean converges faster than
+/// that of independent samples, and best if their number is a power of two. A point that is not on a surface of the
+/// scene, or that lies on a degenerate triangle, adds nothing.
 pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
     let mesh = world.scene().meshes.get(point.mesh as usize);
     if mesh.is_some_and(|m| (point.triangle as usize) < m.triangles.len()) {
@@ -105,7 +105,8 @@ pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, s
 }
 
 /// Adds one sample of the irradiance (lux) at a point in free space, such as a point of a calculation grid. The point
-/// receives light on the side of `normal`, a vector of any length except 0.
+/// receives light on the side of `normal`, a vector of any length. If `normal` is 0 or the position is not finite, adds
+/// nothing.
 pub fn irradiance_in_air<S: PathSink>(
     world: &World,
     position: Vec3,

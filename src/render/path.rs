@@ -259,7 +259,7 @@ pub(super) fn scatter<O: Observer>(
     Some(PathSegment { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, light_u })
 }
 
-/// Samples a light, unless the BSDF is specular.
+/// Samples a light; `None` if the BSDF is purely specular (a mirror or a clear pane).
 #[inline(always)]
 pub(super) fn sample_light(
     world: &World,
@@ -299,8 +299,8 @@ pub(super) fn add_direct_light<O: Observer>(
     }
 }
 
-/// Returns the factor of a light sample's emission, without the BSDF: visibility × mis_weight / pdf. `pdf` is the
-/// solid-angle pdf with which the BSDF would sample the direction of the light.
+/// Returns the factor of a light sample's emission, without the BSDF: transmittance × MIS weight / `light.pdf`. The MIS
+/// weight follows from `pdf`, the solid-angle pdf with which the BSDF would sample the direction of the light.
 #[inline(always)]
 pub(super) fn connection_weight(
     world: &World,

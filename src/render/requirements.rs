@@ -32,8 +32,8 @@ pub struct Requirements {
     pub spots: bool,
     pub directional: bool,
     pub environment: bool,
-    /// Number of textures that affect scattering or emission (`textures`), and number of all textures of the scene
-    /// (`textures_given`).
+    /// Number of textures that make scattering or emission vary over a surface (`textures`), and number of all textures
+    /// of the scene (`textures_given`).
     pub textures: usize,
     pub textures_given: usize,
     /// Upper bound of the albedo of all surfaces, per channel. The albedo includes diffuse, glossy and transmitted
@@ -152,7 +152,8 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
     // Mark the materials that meshes use (`used`). Also mark those that have a triangle of positive area (`spread`): no
     // other material can emit.
     let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
-    // Find the range of the vertex colours by which each material is multiplied.
+    // Find, for each material, the range of the vertex colours that multiply it. A mesh without vertex colours counts
+    // as 1.
     let none = Range { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
     let mut tints = vec![none; scene.materials.len()];
     for mesh in scene.meshes.iter().filter(|m| !m.triangles.is_empty()) {
@@ -195,7 +196,8 @@ fn has_area(mesh: &Mesh) -> bool {
     })
 }
 
-/// Marks the textures of a material that affect its scattering or its emission.
+/// Marks the textures of a material that affect its scattering or its emission. A texture of a single colour does not
+/// count, because it is a constant factor.
 fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges: &[Range], varied: &mut [bool]) {
     for (texture, counts) in [
         (&material.base_color_texture, compiled.is_textured || compiled.has_alpha),

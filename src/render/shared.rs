@@ -169,8 +169,8 @@ pub fn trace<W: ReplayObserver>(
     }
 }
 
-/// Traces a path to its primary vertex. If that vertex cannot take part in sharing, traces the path to its end and
-/// returns `None`.
+/// Traces a path to its primary vertex. Returns `None` if there is no such vertex or if it cannot take part in sharing;
+/// the path is then traced to its end.
 fn trace_primary<'w, W: ReplayObserver>(
     world: &'w World,
     start: &mut Start,
@@ -207,9 +207,9 @@ fn trace_primary<'w, W: ReplayObserver>(
     Some(PrimaryVertex { vertex, bsdf, roulette_weight, scattered })
 }
 
-/// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary
-/// surface. If the secondary vertex cannot be shared, the observer also receives all of its light, and the result is
-/// `None`.
+/// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary surface.
+/// If the secondary vertex cannot be shared, the observer also receives all of its light, and the result is `None`. The
+/// result is also `None` if there is no secondary vertex, if the path ends there, or if the vertex sends no light.
 fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
     primary: &PrimaryVertex,
@@ -245,7 +245,7 @@ fn trace_secondary<'w, W: ReplayObserver>(
     light.map(|light| SecondaryVertex { vertex, light })
 }
 
-/// Records the light of a secondary vertex that sends the same radiance in all directions.
+/// Records the light of a secondary vertex that sends the same radiance in all directions; `None` if it sends none.
 fn record_view_independent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,
@@ -262,7 +262,7 @@ fn record_view_independent<'w, T: Tape>(
     tape.end().then_some(SecondaryLight::ViewIndependent)
 }
 
-/// Records the light of a secondary vertex whose radiance depends on the viewer.
+/// Records the light of a secondary vertex whose radiance depends on the viewer; `None` if the vertex sends no light.
 fn record_view_dependent<'w, T: Tape>(
     world: &World,
     vertex: &Vertex,

@@ -348,8 +348,8 @@ impl World {
     }
 
     /// Returns the transmittance per channel between the ends of a ray. Partly transparent surfaces and clear panes
-    /// attenuate the light; `panes` receives them in arbitrary order. The triangles in `ends`, at the two ends of the
-    /// ray, do not count.
+    /// attenuate the light; `panes` receives them in arbitrary order, and may be incomplete if the result is 0. The
+    /// triangles in `ends`, at the two ends of the ray, do not count.
     pub(super) fn transmittance(&self, ray: &Ray, ends: [u32; 2], panes: Option<&mut Vec<Pane>>) -> Vec3 {
         self.transmittance_without(ray, |triangle| ends.contains(&triangle), panes)
     }

@@ -25,9 +25,10 @@ pub struct Bounds {
     /// The cone of the emission: its unit axis (`axis`), and the angle to the axis beyond which no light is emitted
     /// (`cone_angle`, in radians). `axis` is 0 if the light may go in all directions.
     ///
-    /// At an angle θ to the axis, the bound on the intensity is `intensity` if θ ≤ `cone_angle` - 90°, and `intensity`
-    /// × cos(θ + 90° - `cone_angle`) otherwise. A flat surface has a cone angle of 90°, so that its bound is
-    /// `intensity` × cos θ. For narrower cones, the bound is scaled such that it is `intensity` at θ = 0.
+    /// At an angle θ to the axis, the bound on the intensity is `intensity` if θ ≤ `cone_angle` - 90°. Otherwise it is
+    /// `intensity` × cos(θ + 90° - `cone_angle`), or 0 if this cosine is negative. A flat surface has a cone angle of
+    /// 90°, so that its bound is `intensity` × cos θ. For narrower cones, the bound is scaled such that it is
+    /// `intensity` at θ = 0.
     pub axis: Vec3,
     pub cone_angle: f32,
     /// Whether all lights of the cluster also emit on the side of -`axis`.

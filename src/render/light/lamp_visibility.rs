@@ -90,8 +90,8 @@ pub struct Split {
 }
 
 impl Split {
-    /// Divides the lights: those with a positive weight are likely, those with weight 0 are unlikely. Returns `None`
-    /// if all lights are on the same side.
+    /// Divides the lights: those with a positive weight are likely, those with weight 0 are unlikely. Returns `None` if
+    /// one of the two selectors would have no light.
     pub fn new(lights: &Inventory, weights: Vec<f32>, unlikely_share: f64) -> Result<Option<Self>> {
         let likely = Selector::of_some(lights, |light| weights[light])?;
         let unlikely = Selector::of_some(lights, |light| if weights[light] > 0.0 { 0.0 } else { 1.0 })?;

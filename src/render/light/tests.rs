@@ -350,7 +350,8 @@ fn lambert(corners: &[Vec3]) -> f64 {
         let a = corners[i].as_dvec3().normalize();
         let b = corners[(i + 1) % corners.len()].as_dvec3().normalize();
         let across = a.cross(b);
-        // Compute the angle from its tangent, because the cosine of a small angle is too close to 1.
+        // Compute the angle between `a` and `b` from its tangent, because the cosine of a small angle is too close to
+        // 1.
         across.length().atan2(a.dot(b)) * across.normalize_or_zero().y
     };
     (0..corners.len()).map(edge).sum::<f64>().abs() / 2.0
@@ -537,8 +538,8 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
         };
         disagreed += usize::from((stated / sample.pdf - 1.0).abs() > 1e-4);
     }
-    // Rounding may place a point beside the border of the tile from which it was sampled. Only such points may
-    // disagree.
+    // Rounding may place a sampled point in a neighbour of the tile from which the point was drawn. Only at such points
+    // may the two pdfs disagree.
     assert!(surfaces > 5000 && disagreed <= 5, "{disagreed} of {surfaces}");
 }
 

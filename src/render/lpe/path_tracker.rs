@@ -277,7 +277,8 @@ impl<'a> PathTracker<'a> {
     }
 }
 
-/// Adds light to the sum of a list of expressions. `offset` is the index of the first sum of the initial state.
+/// Adds light to the sum of a list of expressions; does nothing for list 0, which is empty. `offset` is the index of
+/// the first sum of the initial state.
 #[inline(always)]
 fn add_to_list(sums: &mut SparseSums, offset: u32, list: u16, light: Vec3A) {
     if list != 0 {

@@ -134,7 +134,7 @@ fn pixels_reach_the_requested_error() {
     let film = render(&world, &viewer(), &params);
     let interval = film.interval(Monitor::default().job()).unwrap();
     let mean = film.beauty.data.iter().sum::<f32>() / film.beauty.data.len() as f32;
-    // The target applies to the root mean square over a tile.
+    // The target applies to the root mean square of the pixels' errors over a tile.
     for top in (0..32).step_by(8) {
         for left in (0..32).step_by(8) {
             let mut squares = 0.0;
@@ -160,7 +160,7 @@ fn a_cancelled_render_leaves_what_was_published() {
     });
     assert_eq!(result.unwrap_err(), Error::cancelled());
     // The render was cancelled after the coarse pass, which traced one path in every second pixel of every second row.
-    // The other pixels show the value of the pixel to the left and above that has a path.
+    // Each other pixel shows the value of the traced pixel in its block of 2 × 2.
     let film = last.unwrap();
     let paths = film.paths.data.iter().sum::<f32>();
     assert!(paths > 0.0 && paths < 4096.0, "{paths}");

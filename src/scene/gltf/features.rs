@@ -131,7 +131,8 @@ fn extensions(list: &mut Vec<Unrendered>, object: &Value, place: &dyn Fn() -> St
     }
 }
 
-/// Whether all properties of an extension have their default values, so that the extension has no effect.
+/// Whether the properties in `neutral` all have their default values, so that the extension has no effect. False if
+/// `neutral` is empty, or if a texture gives the extension an effect.
 fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
     let is = |value: &Value, wanted: f64| match value {
         Value::Array(numbers) => numbers.iter().all(|number| number.as_f64() == Some(wanted)),

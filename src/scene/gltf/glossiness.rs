@@ -58,8 +58,9 @@ fn brightness(colour: Vec3) -> f32 {
     (colour * colour).dot(Vec3::new(0.299, 0.587, 0.114)).sqrt()
 }
 
-/// Solves the quadratic equation for the metalness at which the material has the given diffuse and specular
-/// brightness. `rest` is 1 minus the largest channel of the specular colour.
+/// Solves the quadratic equation for the metalness at which the material has the given diffuse and specular brightness.
+/// The result is clamped to `[0, 1]`; it is 0 if `specular` is below [`DIELECTRIC`]. `rest` is 1 minus the largest
+/// channel of the specular colour.
 fn metalness(diffuse: f32, specular: f32, rest: f32) -> f32 {
     if specular < DIELECTRIC {
         return 0.0;

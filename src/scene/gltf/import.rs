@@ -340,6 +340,7 @@ impl Importer<'_> {
 
     /// Returns the material and the vertex colours of a primitive. If all vertices share one colour, there are no
     /// vertex colours, and the material is a copy multiplied by that colour (the original if the colour is white).
+    /// Colours are clamped to `[0, 1]`.
     fn tint(&mut self, material: usize, colours: Vec<[f32; 4]>) -> Result<(usize, Vec<Vec4>)> {
         let clamped = |colour: [f32; 4]| Vec4::from(colour).clamp(Vec4::ZERO, Vec4::ONE);
         let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };
@@ -448,7 +449,7 @@ fn triangulate(mode: Mode, indices: &[u32]) -> Result<Vec<[u32; 3]>> {
     Ok(triangles)
 }
 
-/// Replaces each zero normal by the area-weighted mean normal of the faces at its vertex.
+/// Replaces each zero normal by the area-weighted mean normal of the faces at its vertex, or by +y if that mean is 0.
 fn mend_normals(positions: &[Vec3], normals: &mut [Vec3], triangles: &[[u32; 3]]) -> Result<()> {
     if !normals.contains(&Vec3::ZERO) {
         return Ok(());

@@ -256,7 +256,8 @@ fn transform(info: &texture::Info) -> Option<&extensions::texture::TextureTransf
     info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref())
 }
 
-/// Returns a texture reference with the set of texture coordinates and their transform; the caller sets the texture.
+/// Returns a texture reference with the set of texture coordinates (0 or 1; any other is an error) and their transform.
+/// The caller sets the texture.
 fn place(uv_set: u32, transform: Option<&extensions::texture::TextureTransform>) -> Result<TextureRef> {
     let uv_set = transform.and_then(|t| t.tex_coord).unwrap_or(uv_set) as usize;
     if uv_set > 1 {
