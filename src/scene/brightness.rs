@@ -8,8 +8,8 @@ use glam::Vec3;
 
 impl Scene {
     /// Checks the luminance of every emissive material and of the environment, with their textures, and the intensity
-    /// or illuminance of every punctual light. The error names the first material or light that is too bright, its
-    /// value and the allowed range.
+    /// or illuminance of every punctual light. For a luminaire with faces, also checks their luminance. The error names
+    /// the first material or light that is too bright, its value and the allowed range.
     pub fn check_brightness(&self) -> Result<()> {
         for (i, material) in self.materials.iter().enumerate() {
             self.check_emission(material).map_err(|e| e.context(format_args!("material {i} ({:?})", material.name)))?;
@@ -24,7 +24,8 @@ impl Scene {
         }
     }
 
-    /// Checks the emission of a material: the factor alone, and the factor times each texel of its emission texture.
+    /// Checks the emission of a material: the factor alone, and the factor times each texel of its emission texture. If
+    /// the factor is 0, the texture has no effect and is not checked.
     fn check_emission(&self, material: &Material) -> Result<()> {
         check_light("emission", material.emission)?;
         let texture = material.emission_texture.and_then(|reference| self.textures.get(reference.texture));

@@ -17,9 +17,10 @@ const BINS: usize = 12;
 /// From this depth on, splits halve the number of lights instead of minimising the heuristic. This limits the depth of
 /// the tree. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// Splits whose costs differ by less than this share count as equal, and the last of them is chosen. Regular patterns
-/// of lamps often have splits of equal cost, whose computed costs differ only by rounding. Rounding must not decide
-/// between them, so that a scaled scene gets the same tree, and thus the same image. [rounding]
+/// Costs that differ by less than this share count as equal. Of splits of equal cost, the last one is chosen (in the
+/// order of axes and borders); of parts of equal cost, the first one is divided. Regular patterns of lamps often have
+/// equal costs, which differ only by rounding when computed. Rounding must not decide, so that a scaled scene gets the
+/// same tree, and thus the same image. [rounding]
 const TIE: f32 = 1e-4;
 /// Offset, in bins, that is added to a position. A light on the border of two bins then falls into the upper bin,
 /// whichever way its position is rounded. [rounding]
@@ -193,7 +194,7 @@ impl LightTree {
         }
     }
 
-    /// Returns the pmf with which [`LightTree::sample`] selects a light.
+    /// Returns the pmf with which [`LightTree::sample`] selects a light; 0 if the light cannot reach the receiver.
     pub fn pmf(&self, receiver: &Receiver, light: usize) -> f32 {
         if let Some(&share) = self.fixed.get(light) {
             return share as f32;
@@ -286,7 +287,7 @@ impl Extent {
 }
 
 /// Splits a cluster of at least two lights by reordering `items`. Returns the size of the first part. Neither part is
-/// empty.
+/// empty: if no border of bins separates the lights, the first part is the first half of `items`.
 fn split(items: &mut [Item]) -> usize {
     let low = items.iter().fold(Vec3A::INFINITY, |a, i| a.min(i.centre));
     let high = items.iter().fold(Vec3A::NEG_INFINITY, |a, i| a.max(i.centre));

@@ -81,7 +81,8 @@ impl<'a> File<'a> {
     fn part(&self, buffer: usize, start: u64, length: u64) -> Result<&[u8]> {
         let whole = self.buffers.get(buffer).ok_or_else(|| missing("buffer", buffer, self.buffers.len()))?;
         let Some(whole) = whole else {
-            // A buffer without data is valid in glTF: a vendor's extension may supply its contents.
+            // A buffer without data is valid in glTF: a vendor's extension may supply its contents. The error is
+            // therefore `Unsupported` instead of `Format`.
             let message = format!("buffer {buffer} has no URI, and the file has no binary chunk for it");
             return Err(Error::new(ErrorKind::Unsupported, message));
         };

@@ -405,7 +405,8 @@ fn pack(root: &Value, binary: &[u8]) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// Splits a colour into a colour whose largest channel is 1, and the factor by which to multiply that colour.
+/// Splits a colour into a colour whose largest channel is 1, and the factor by which to multiply that colour. Both are
+/// 0 if no channel is positive.
 fn split_peak(colour: Vec3) -> (Vec3, f32) {
     let peak = colour.max_element();
     if peak > 0.0 { (colour / peak, peak) } else { (Vec3::ZERO, 0.0) }

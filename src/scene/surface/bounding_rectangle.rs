@@ -36,7 +36,8 @@ pub fn fit(points: &[DVec3], centre: DVec3, normal: DVec3) -> BoundingRectangle 
     if aligned { aligned_rectangle } else { turned_rectangle }
 }
 
-/// Returns the u axis of the rectangle that is aligned with the world axes.
+/// Returns the u axis of the rectangle that is aligned with the world axes. It is horizontal on a wall, and the
+/// projection of +x onto the plane otherwise.
 fn upright(normal: DVec3) -> DVec3 {
     let candidate = if normal.y.abs() < WALL {
         // On a wall, v points down as far as possible, and u = normal × v.
