@@ -49,7 +49,7 @@ const UNLIKELY: u32 = 1 << 31;
 /// What a render has learned about which lamps reach the surfaces in view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct LampVisibility {
-    /// Number of all lamps of the scene: connected luminous surfaces, punctual lights, and the environment.
+    /// Number of all lamps of the scene that emit: connected luminous surfaces, punctual lights, and the environment.
     pub lamps: usize,
     /// Number of hidden lamps. A lamp is hidden if none of its light samples has arrived at a vertex of a path so far,
     /// and later samples are unlikely to arrive.

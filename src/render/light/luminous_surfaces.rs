@@ -45,9 +45,10 @@ impl LuminousSurfaces {
         Ok(Self { of_pieces, count: lamps as usize })
     }
 
-    /// Returns the number of all lamps of the scene, and the number of hidden lamps. A lamp is hidden if all its
-    /// lights are hidden. A connected luminous surface is one lamp, whose lights are its pieces. Every punctual light
-    /// is a lamp of its own, and so is the environment. `is_hidden` takes the number of a light in the [`Inventory`].
+    /// Returns the number of all lamps of the scene, and the number of hidden lamps. A lamp is hidden if all its lights
+    /// are hidden. A connected luminous surface is one lamp, whose lights are its pieces. Every punctual light that
+    /// emits is a lamp of its own, and so is an environment that emits. `is_hidden` takes the number of a light in the
+    /// [`Inventory`].
     pub fn count(&self, lights: &Inventory, is_hidden: impl Fn(usize) -> bool) -> Result<[usize; 2]> {
         let mut surfaces = try_vec(self.count, true)?;
         self.of_pieces.iter().enumerate().for_each(|(piece, &lamp)| surfaces[lamp as usize] &= is_hidden(piece));

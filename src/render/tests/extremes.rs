@@ -27,7 +27,8 @@ fn scale_changes_nothing() {
 
 const SMALL: fn() -> Params = || Params { width: 24, height: 16, samples: 16, ..Params::default() };
 
-/// The scene of [`everything`], enlarged by `scale`, with lights that are brighter by the factor `light`.
+/// The scene of [`everything`], enlarged by `scale`, with lights that are brighter by the factor `light`. The intensity
+/// of the point light is also multiplied by `scale`², so that the illuminance of surfaces does not depend on `scale`.
 fn grown(scale: f32, light: f32) -> Scene {
     let mut scene = everything();
     scene.meshes.iter_mut().flat_map(|m| &mut m.positions).for_each(|p| *p *= scale);

@@ -181,7 +181,7 @@ fn a_render_stops_when_it_is_good_enough() {
     assert!(film.error <= 0.3 && film.samples < 1 << 20);
 }
 
-/// Returns the CPU time of this thread, which does not depend on other programs.
+/// Returns the CPU time of this thread, which does not depend on other programs; 0 if the system has no `/proc`.
 fn processor_time() -> Duration {
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap_or_default();
     Duration::from_nanos(text.split(' ').next().and_then(|n| n.parse().ok()).unwrap_or(0))

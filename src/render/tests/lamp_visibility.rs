@@ -91,7 +91,8 @@ fn learning_changes_no_mean_and_gains_variance() {
         squares += z * z;
         variances = [variances[0] + variance / mean.powi(2), variances[1] + other / mean.powi(2)];
     }
-    // A chi-squared variable with six degrees of freedom is below this limit with a probability of 99.9 %.
+    // The sum of the squares is approximately a chi-squared variable with six degrees of freedom. Such a variable is
+    // below this limit with a probability of 99.9 %.
     assert!(squares < 22.5, "{squares}");
     assert!(variances[0] * 1.5 < variances[1], "variances {variances:?}");
 }

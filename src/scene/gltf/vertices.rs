@@ -58,7 +58,8 @@ impl<'a> Vertices<'a> {
         colours.map(|colours| try_collect(colours.into_iter().map(|[r, g, b]| [r, g, b, 1.0]))).transpose()
     }
 
-    /// Returns the vertex indices, and the primitive mode by which they form triangles.
+    /// Returns the vertex indices, and the primitive mode by which they form triangles. A primitive without indices
+    /// uses its vertices in order.
     pub fn indices(&self, mode: Mode, count: usize) -> Result<(Mode, Vec<u32>)> {
         match (&self.decoded, self.primitive.indices) {
             // A Draco stream always holds separate triangles, whatever the mode of the primitive.
