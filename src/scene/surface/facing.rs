@@ -79,7 +79,8 @@ fn mean_clear_distance(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: D
         // Sample a point uniformly by area, and a direction in proportion to its cosine to the normal (Malley's
         // method).
         let mut rng = Rng::new(0, &[ray as u64]);
-        let at = sums.partition_point(|s| *s < rng.next_f64() * sum).min(sums.len() - 1);
+        let area = rng.next_f64() * sum;
+        let at = sums.partition_point(|s| *s < area).min(sums.len() - 1);
         let (mesh, triangle) = patch.triangles[at];
         let [a, b, c] = scene.meshes[mesh].corners(triangle).map(|p| p.as_dvec3());
         let (root, share) = (rng.next_f64().sqrt(), rng.next_f64());
