@@ -9,7 +9,7 @@ use glam::DVec2;
 
 /// A warning is given if the motion of more than this share of the compared pixels leads to another surface in the
 /// previous frame. With a correct motion, the share is nearly 0. Errors of the motion of up to one pixel do not count.
-/// \[judged on 1 scene\]
+/// [judged on 1 scene]
 pub const MAX_DISAGREEMENT: f64 = 0.001;
 
 /// Warns if the motion disagrees with the guides: if it leads too many pixels to another surface.

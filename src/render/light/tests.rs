@@ -161,8 +161,7 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
             }
             LightSource::Surface { .. } => {
                 counts[6] += 1.0;
-                // A sample on the lamp counts as 1 / pdf, and any other sample as 0. The mean over all n samples is the
-                // solid angle of the lamp.
+                // The mean of 1 / pdf on the lamp and 0 elsewhere, over all n samples, is the lamp's solid angle.
                 surface += f64::from(1.0 / sample.pdf) / f64::from(n);
             }
             LightSource::Environment => {
@@ -350,8 +349,7 @@ fn lambert(corners: &[Vec3]) -> f64 {
         let a = corners[i].as_dvec3().normalize();
         let b = corners[(i + 1) % corners.len()].as_dvec3().normalize();
         let across = a.cross(b);
-        // Compute the angle between `a` and `b` from its tangent, because the cosine of a small angle is too close to
-        // 1.
+        // Compute the angle between `a` and `b` from its tangent: the cosine of a small angle is too close to 1.
         across.length().atan2(a.dot(b)) * across.normalize_or_zero().y
     };
     (0..corners.len()).map(edge).sum::<f64>().abs() / 2.0
