@@ -9,7 +9,8 @@ use super::footprint::{Footprints, RUN};
 use super::lanes::{MAX_READ, TAPS};
 use crate::image::Image;
 
-/// Longest side of a rectangle that the taps cover whatever its sub-pixel position: `TAPS - 1`. [convention]
+/// Longest side, in pixels of the pyramid level, of a rectangle that the taps cover at any sub-pixel position:
+/// `TAPS - 1`. [convention]
 pub const MAX_SIDE: f32 = 3.0;
 
 /// The cubic filter fades out as the footprint of a pixel grows: it has full weight up to `SHARP` and no weight from
@@ -91,8 +92,9 @@ enum Filter {
     Overlap,
 }
 
-/// Computes the filter weights along x or y. `at` is the position of the footprint's centre relative to the second
-/// tap.
+/// Computes the weights of the four taps of each pixel, along x or y. `at` is the position of the footprint's centre
+/// relative to the second tap, and `length` is the side of the footprint. `sharp` is the weight of the sharpening terms
+/// of [`Filter::Fading`].
 #[inline(always)]
 fn weights(at: &[f32; RUN], length: &[f32; RUN], sharp: &[f32; RUN], filter: Filter, to: &mut [[f32; RUN]; TAPS]) {
     let [first, second, third, fourth] = to;

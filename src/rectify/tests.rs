@@ -145,7 +145,8 @@ fn the_files_focal_length_decides_where_lines_do_not() {
     }
 }
 
-/// Measures the mean square of the ratio of the true to the stated error of the focal length, over many rooms.
+/// Divides the true error of the focal length by its stated error, and measures the mean square of this ratio over many
+/// rooms.
 #[test]
 fn the_stated_error_of_a_focal_length_from_lines_is_its_true_error() {
     let truth = camera(0.5, 0.3, 0.05, 700.0);

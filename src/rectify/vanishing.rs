@@ -42,8 +42,9 @@ pub struct VanishingPoint {
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
 pub struct Vanishing {
-    /// With the Manhattan search, the points of the (up to three) orthogonal directions come first. The further points
-    /// follow. Both groups are sorted by decreasing total weight of the lines that run to a point.
+    /// The first three points found come before any further points. The Manhattan search finds the points of the (up to
+    /// three) orthogonal directions first. The first three points and the further points are each sorted by decreasing
+    /// total weight of the lines that run to a point.
     pub points: Vec<VanishingPoint>,
     /// For each segment, the index of the point it runs to; `None` if it runs to no point.
     pub members: Vec<Option<usize>>,
@@ -53,7 +54,7 @@ pub struct Vanishing {
     /// Focal length, in pixels, with which the directions were estimated: the given one, if any.
     ///
     /// Otherwise, the Manhattan search takes the focal length for which the points are most nearly orthogonal, a weak
-    /// guess if only one point is finite. The successive search takes the usual focal length.
+    /// guess if only one point is finite. The successive search takes `manhattan::USUAL_FOCAL`.
     pub focal: f64,
 }
 
@@ -149,7 +150,7 @@ fn orthogonal_and_further(
 }
 
 /// Returns the direction unchanged, with the covariance that the lines imply. If the lines do not determine a point,
-/// the error is [`MAX_ERROR`].
+/// the standard deviation of the direction is [`MAX_ERROR`].
 fn refine_at(lines: &[WeightedLine], direction: DVec3, focal: f64) -> DirectionEstimate {
     let covariance =
         refine(lines, direction, focal).map_or_else(|| round_covariance(direction, MAX_ERROR), |r| r.covariance);
@@ -212,7 +213,8 @@ fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Dire
     kept
 }
 
-/// Returns for each direction the lines that agree with it better than with any other direction.
+/// Returns for each direction the lines that agree with it better than with any other direction. Lines that agree with
+/// no direction are left out.
 fn nearest(lines: &[WeightedLine], directions: &[Refined], focal: f64) -> Vec<Vec<WeightedLine>> {
     let points: Vec<DVec3> = directions.iter().map(|r| project(r.direction, focal)).collect();
     let mut groups = vec![Vec::new(); points.len()];

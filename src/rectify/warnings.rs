@@ -7,8 +7,9 @@ use crate::warning::{Code, Warning, percent};
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Limit that the warning about an assumed focal length reports: the relative standard deviation of a focal length
-/// that the lines and the prior determine equally well. If the lines determine it less well, the deviation is larger.
+/// Relative standard deviation of the focal length that the warning about an assumed focal length reports as its limit.
+/// This value results if the lines and the prior are equally precise. If the lines are less precise than the prior, the
+/// standard deviation is larger.
 /// [convention]
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
 /// A room axis whose standard deviation is above this, in radians, raises a warning. [judged on 38 photos]

@@ -68,7 +68,8 @@ pub(super) struct Sorter<'a> {
 }
 
 impl<'a> Sorter<'a> {
-    /// `factor` converts irradiance to the radiance that is compared with the photo.
+    /// `factor` converts the irradiance at the target point to the radiance that is compared with the photo
+    /// (`params::Quantity`).
     pub fn new(bins: &'a Bins<'a>, factor: Vec3, sums: &'a mut [DVec3], others: &'a mut DVec3) -> Self {
         Self { bins, factor, sums, others }
     }

@@ -62,8 +62,8 @@ impl Problem<'_> {
             let step = self.newton_step(lambda, &states, &gradient);
             let t = self.line_search(lambda, &z, &step, &gradient);
             z.iter_mut().zip(&step).for_each(|(z, d)| *z += t * d);
-            // If the active set did not change, the function is a parabola along the step, and the step ends at its
-            // minimum.
+            // If the active set did not change, the dual function is quadratic along the step. The full step then ends
+            // at the minimum.
             if t > 1.0 - CONVERGED && self.states(&z) == states {
                 return Ok(self.clipped(&z));
             }

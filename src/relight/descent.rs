@@ -23,8 +23,8 @@ const ARMIJO: f64 = 1e-4;
 /// length of the quasi-Newton direction: with any value from 0.025 to 0.1, Rosenbrock's valley takes 43 or 44 steps.
 /// [convention]
 const FIRST_STEP: f64 = 0.05;
-/// The search ends when a step decreases the function by at most this share of the function's value. It converges
-/// faster than linearly, so any value from 1e-12 to 1e-8 gives the same minimum to within 1e-8 of its value.
+/// The search ends when a step decreases the function by at most this share of the function's value. BFGS converges
+/// faster than linearly, so any value from 1e-12 to 1e-8 gives the same minimum, up to a relative difference of 1e-8.
 /// [convention]
 const MIN_RELATIVE_GAIN: f64 = 1e-10;
 

@@ -89,8 +89,8 @@ pub struct GroupSolution {
     /// the chosen level and the continuous power is added.
     pub half_width: Vec<DVec3>,
     pub outcomes: Vec<Outcome>,
-    /// The reason why goals of positive weight are missed; `None` if these are met. If goals are missed, the powers are
-    /// the best within the bounds.
+    /// The reason why goals of positive weight are missed; `None` if all of them are met. If goals are missed, the
+    /// powers are the best within the bounds.
     pub unreachable: Option<String>,
 }
 
@@ -141,7 +141,7 @@ impl Powers {
 
     /// Computes the half-widths of the 95 % confidence intervals of all groups by the jackknife
     /// ([`super::estimate::pseudo_values`]). `without` holds, for each batch, the powers solved without this batch.
-    /// The pseudo-values themselves are not needed: they spread `n - 1` times as far as these powers.
+    /// The pseudo-values are not computed: their standard deviation is `n - 1` times that of the powers in `without`.
     fn jackknife(&self, without: &[Self], job: Job) -> Result<Self> {
         let n = BATCHES as f64;
         let width = |list: usize| {
@@ -279,7 +279,7 @@ impl System<'_> {
         self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.regularisation))
     }
 
-    /// Rounds the powers to the available dimming levels.
+    /// Replaces the powers by the dimming levels that together best meet the goals ([`super::steps`]).
     fn stepped(&self, measured: &Measured, whole: &[DVec3]) -> Vec<DVec3> {
         let upper = self.upper();
         let mut levels = self.params.levels.clone();
@@ -320,8 +320,8 @@ impl System<'_> {
                 Aspect::Colour => channels.iter().map(|&c| (DVec3::AXES[c], goal.constraint[c])).collect(),
                 Aspect::Luminance => vec![(LUMINANCE, goal.constraint[0])],
             };
-            // A goal of zero radiance has no brightness to divide by: divide its residual by the radiance under all
-            // lamps instead.
+            // Divide the residuals of a goal by the brightest channel of its target, or of the radiance under all lamps
+            // if the target is black. If both are black, the goal has no weight.
             let bright = target.max_element();
             let size = if bright > 0.0 { bright } else { row.iter().sum::<DVec3>().max_element() };
             let weight = if size > 0.0 { goal.weight / size } else { 0.0 };

@@ -47,8 +47,8 @@ pub struct Params {
     pub constraint: [Constraint; 3],
     /// Maximum number of paths, in `[1024, 1 << 30]`.
     pub paths: u32,
-    /// Stop when the largest relative half-width of the 95 % intervals is at most this value, in `[0, 1]`; with 0, do
-    /// not stop for this reason.
+    /// Stop when the largest relative half-width of the result's 95 % confidence intervals is at most this value, in
+    /// `[0, 1]`; with 0, do not stop for this reason.
     pub target_error: f32,
     /// Stop after this many milliseconds; with 0, do not stop for this reason.
     pub time_budget_ms: u32,

@@ -98,9 +98,10 @@ pub struct Placement {
 }
 
 /// Maximum number of cells along each side of the importance map in the search; larger maps are reduced. The bench
-/// prints the time of the search and the light that it gains. [bench relight]
+/// prints the time of the search and the light that the search gains. [bench relight]
 const MAX_CELLS: usize = 64;
-/// Number of best starting points from which the search descends. The bench shows its effect as for [`MAX_CELLS`].
+/// The search descends from this number of the best starting points. The bench prints the time of the search and the
+/// light that the search gains.
 /// [bench relight]
 const MAX_DESCENTS: usize = 8;
 
@@ -222,7 +223,8 @@ impl Search {
         (value, derivatives.map(|derivative| derivative.dot(by_light)))
     }
 
-    /// Returns the target's light under a placement, and its derivatives.
+    /// Returns the target's light under a placement, and the derivatives of this light with respect to the five numbers
+    /// of the placement.
     fn light(&self, numbers: [f64; 5]) -> (DVec3, [DVec3; 5]) {
         let pose = Pose::of(numbers);
         let rotation = DMat2::from_angle(pose.rotation);

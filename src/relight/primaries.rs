@@ -114,7 +114,7 @@ mod tests {
         // If a colour is too bright for the bounded drives, all drives are at their maximum.
         let bounded = mix_primaries(&[warm, cold], 1.0, (warm + cold) * 10.0).unwrap();
         assert_eq!((bounded.drives, bounded.reached), (vec![1.0; 2], false));
-        // No mixture on a fine grid of drives is nearer.
+        // No mixture on a fine grid of drives is nearer to the wanted colour.
         let mut rng = Rng::new(5, &[]);
         for _ in 0..20 {
             let mut random = || DVec3::new(rng.next_f64(), rng.next_f64(), rng.next_f64());

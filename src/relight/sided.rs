@@ -78,7 +78,8 @@ impl Problem<'_> {
             }
             let (t, slope) = self.line_search(lambda, &x, &next);
             x.iter_mut().zip(&next).for_each(|(x, n)| *x += t * (n - *x));
-            // Stop when the function no longer decreases: a term at its limit may change state by rounding.
+            // Stop when the function no longer decreases. Otherwise a term at its limit could change its state by
+            // rounding in every step.
             if -slope * t <= ROUNDING * dot(self.right, self.right) {
                 return Ok(x);
             }

@@ -13,8 +13,8 @@ pub enum TargetStatus {
     TooBright,
     /// The lamps are too dim even at their upper bounds, or the goals contradict each other.
     TooDim,
-    /// No light of this channel reaches the target, so the channel cannot be solved; it gets the mean scale of the
-    /// solved channels.
+    /// No measurable light of this channel reaches the target, so the channel cannot be solved. It gets the mean
+    /// scale of the solved channels.
     Dark,
 }
 

@@ -14,14 +14,14 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Number of paths per batch in the first round. Rounds follow until a stopping condition holds, so the sizes of rounds
-/// determine only how far it is overshot. \[convention\]
+/// Number of paths per batch in the first round. Rounds follow until a stopping condition holds, so their sizes only
+/// determine how many paths are traced beyond the necessary number. \[convention\]
 pub const FIRST_ROUND: u32 = 64;
 /// Smallest and largest growth factor of the number of paths in later rounds. Like `FIRST_ROUND`, they change only the
 /// number of rounds and the overshoot. [convention]
 const GROWTH: [f64; 2] = [1.25, 4.0];
 /// Safety factor on the predicted number of paths: with 32 batches, the error is known only to within 1 / √62 = 13 %.
-/// If the forecast is too low, another round follows, so any value from 1 to 1.3 gives a result within the target.
+/// If the forecast is too low, another round follows, so any value from 1 to 1.3 reaches the target error.
 /// \[convention\]
 pub const FORECAST_MARGIN: f64 = 1.1;
 

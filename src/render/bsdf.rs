@@ -235,8 +235,8 @@ impl<'a> Layers<'a> {
         let s = bsdf_params;
         let (t, b) = normal.any_orthonormal_pair();
         let wo = to_local(&[t, b, normal], wo);
-        // Compute the albedo of the top layer for the direction of the viewer: the largest channel of the whole layer
-        // (`top`), and its dielectric part alone (`coat_albedo`).
+        // Compute two albedos for the direction of the viewer: `top` is the largest channel of the top layer's albedo,
+        // and `coat_albedo` is the albedo of the dielectric part of the top layer alone.
         let has_top = s.f90 > 0.0;
         let lobe = match table {
             Some(table) if has_top && s.roughness >= MIRROR_ROUGHNESS => {

@@ -205,7 +205,7 @@ fn every_reason_for_a_missed_goal_is_reported() {
     assert!(error.message.contains("no light of any group finds its way to a goal"), "{error}");
 }
 
-/// A goal in lux is met by its luminance, whatever the colour of the light in the room.
+/// A goal in lux is met if the luminance on its place is right, whatever the colour of the light.
 #[test]
 fn lux_are_luminance() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
@@ -362,8 +362,8 @@ fn free_colours_meet_a_coloured_goal() {
     assert!(kept.unreachable.unwrap().contains("colour"));
 }
 
-/// With many lamps, at least 54 of the 64 confidence intervals of single lamps contain the true response, which is
-/// taken from many paths.
+/// With many lamps, at least 54 of the 64 confidence intervals of single lamps contain the true response. The true
+/// response is estimated with many paths.
 #[test]
 fn intervals_of_single_lamps_cover() {
     let places: Vec<[usize; 2]> = (0..64).map(|i| [2 * (i % 8), 2 * (i / 8)]).collect();

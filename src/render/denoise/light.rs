@@ -16,7 +16,8 @@ const MIN_ALBEDO: f32 = 0.02;
 /// Each half of a pixel has the weight `1 / (1 + CONFIDENCE_FALLOFF * r)`. Here r is the variance of this half at the
 /// pixel, divided by the mean variance of the same half in the pixels around. [bench filter]
 const CONFIDENCE_FALLOFF: f32 = 0.3;
-/// Radius, in pixels, of the neighbourhood over which that mean variance is taken. [bench filter]
+/// Radius, in pixels, of the neighbourhood over which the variance of a half is averaged to compute its weight.
+/// [bench filter]
 const CONFIDENCE_RADIUS: usize = 6;
 /// Relative errors are errors divided by a mean radiance around the pixel; this is the radius of the mean in pixels.
 /// [bench filter]

@@ -121,7 +121,7 @@ fn passes(light: &Light, guides: &Guides, classes: &Classes, tolerance: f32, job
         let tested = Pilot { light: pilots, variance: &variance, tolerance };
         let filtered = pass(values, Some(tested), step, part.part(0.2, 1.0))?;
         passes.push(filtered);
-        // Free the first pilot: the result of the last pass is the pilot from now on.
+        // Free the first pilot: from now on, the pilot is the result of the most recent pass.
         pilot.data = Vec::new();
     }
     Ok(passes)

@@ -22,7 +22,7 @@ use crate::simd::widest;
 const RADIUS: isize = 2;
 /// Standard deviation of the Gaussian over the taps, in taps. [bench filter]
 const SIGMA: f32 = 2.0;
-/// Ridge regularisation of the slopes q and r: this share of the sum of weights is added to the moments xx and yy.
+/// Ridge regularisation of the slopes q and r: this share of Σw is added to Σwx² and to Σwy² (see [`SUMS`]).
 /// Where the neighbours are few, the result then approaches the weighted mean; where they lie on one line, the slope
 /// across the line approaches 0. [bench filter]
 const RIDGE: f32 = 0.02;

@@ -53,8 +53,8 @@ impl Statement {
     }
 }
 
-/// Returns the squared error: the sum of the squared bias and the variance over all pixels. If noise makes the sum of
-/// the squared biases negative, it counts as 0.
+/// Returns the squared error: the squared bias plus the variance, summed over all pixels and channels. If noise makes
+/// the estimated sum of the squared biases negative, this sum counts as 0.
 fn squared_error(errors: &Planes) -> f64 {
     let (mut bias, mut variance) = (0.0, 0.0);
     for y in 0..errors.height {

@@ -1,5 +1,5 @@
 //! Overlap of a rectangle of texels with a triangle: whether the triangle covers none, part or all of the rectangle,
-//! the area of the overlap, and uniform sampling of its points.
+//! the area of the overlap, and uniform sampling of points of the overlap.
 
 use glam::{DVec2, Vec2};
 
