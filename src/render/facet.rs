@@ -35,8 +35,8 @@ pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// The region where most triangles of a scene lie counts as far from the origin if its distance exceeds this multiple
 /// of its size. [convention]
 const FAR: f64 = 32.0;
-/// The region where most triangles of a scene lie is found from a sample of the triangles. Its size is from
-/// `DETAIL_SAMPLES` to twice that number, so that the sample fits in the memory reserve. In a scene with fewer
+/// The region where most triangles of a scene lie is found from a sample of the triangles. The sample has
+/// from `DETAIL_SAMPLES` to twice as many triangles, so that it fits in the memory reserve. In a scene with fewer
 /// triangles, all triangles are examined. [convention]
 const DETAIL_SAMPLES: usize = 1024;
 /// Index that stands for "no triangle" or "no emitter".

@@ -222,7 +222,7 @@ fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u6
     let (mut sources, mut rated) = (Vec::new(), Vec::new());
     rated.resize(world.scene().lights.len(), false);
     for lamp in lamps {
-        // A luminaire that causes no glare, because it is seen edge-on, is rated too: its light is not unrated light.
+        // A luminaire that is seen edge-on causes no glare, but counts as rated: its light is not part of `unrated`.
         rated[lamp.light] = true;
         let Some(seen) = lamp.seen_from(world, position) else { continue };
         // A luminaire behind the observer causes no glare.

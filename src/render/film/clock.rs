@@ -4,7 +4,7 @@ use crate::error::Result;
 use std::time::{Duration, Instant};
 
 /// Smallest time between two published images, as a multiple of the time that publishing one takes: publishing takes at
-/// most one eleventh of the time. The finished image does not depend on it. [convention]
+/// most one eleventh of the time. The finished image does not depend on this ratio. [convention]
 const PUBLISH_RATIO: u32 = 10;
 
 /// Measures the time that a render has taken, and compares it with the time budget.

@@ -8,8 +8,8 @@ pub const TILE: usize = 8;
 /// Number of pixels in a tile.
 pub const AREA: usize = TILE * TILE;
 
-/// Largest number of pixels in the coarsest image of a progressive render. It determines only which pixels get their
-/// first path first: the finished image has the same expected value for any number. [convention]
+/// Largest number of pixels in the coarsest image of a progressive render. The number determines only which pixels get
+/// their first path first: the finished image has the same expected value for any number. [convention]
 const COARSE_PIXELS: usize = 1024;
 
 /// An image divided into tiles, row by row. The tiles of the last column and row may extend beyond the image.
@@ -55,7 +55,7 @@ impl Grid {
         part(tile % self.across(), self.width) * part(tile / self.across(), self.height)
     }
 
-    /// Returns for each tile the larger of its own value and the mean over its 3 × 3 neighbourhood.
+    /// Returns for each tile the larger of its own value and the mean value of the tiles in its 3 × 3 neighbourhood.
     pub fn max_with_neighbourhood_mean(&self, values: &[f64]) -> Result<Vec<f64>> {
         let (across, down) = (self.across(), self.down());
         let around = |i: usize, n: usize| i.saturating_sub(1)..(i + 2).min(n);

@@ -294,8 +294,8 @@ mod tests {
 
     #[test]
     fn systematic_samples_estimate_totals_without_bias() {
-        // The weighted sum over the selected items estimates the sum of `values` over all items without bias. The
-        // estimate for the chances themselves is exact in every round.
+        // The weighted sum over the selected items estimates the sum of `values` over all items without bias. If
+        // the values are the chances, the estimated sum is exact in every round.
         let chances = [0.1, 3.0, 0.0, 0.4, 1.5, 0.2, 7.0];
         let values = [5.0, 1.0, 0.0, 2.0, 4.0, 3.0, 9.0];
         let (mut rng, mut mean) = (Rng::new(3, &[]), 0.0);

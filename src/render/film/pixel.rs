@@ -10,8 +10,8 @@
 
 use glam::{DVec3, Vec3};
 
-/// Number of independently scrambled point sequences per pixel. Four are the fewest that leave two, and thus an
-/// estimate of the variance, in each of the two halves ([`Pixel::half_variances`]). \[convention\]
+/// Number of independently scrambled point sequences per pixel. To estimate its variance, each of the two halves needs
+/// at least two sequences ([`Pixel::half_variances`]), so four is the smallest number. \[convention\]
 pub const REPLICATIONS: u32 = 4;
 
 /// Sums over the paths of a pixel so far.

@@ -40,7 +40,8 @@ pub fn median(means: &[DVec3]) -> Option<DVec3> {
     (!means.is_empty()).then(|| DVec3::from_array([0, 1, 2].map(median)))
 }
 
-/// Returns the mean radiance of the pixels that have paths, and the total number of their paths.
+/// Returns the mean radiance of the pixels that have paths, and the total number of their paths; `None` if no pixel has
+/// paths.
 pub fn mean<'a>(pixels: impl IntoIterator<Item = &'a Pixel>) -> Option<(DVec3, f64)> {
     let (mut sum, mut count, mut paths) = (DVec3::ZERO, 0.0, 0.0);
     for pixel in pixels.into_iter().filter(|p| p.count() > 0) {

@@ -7,8 +7,8 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// Largest number of paths of all tiles together, a limit on the work. If it is exceeded, the paths of each tile are
-/// reduced, but to no less than `MIN_ALONG` × `MIN_ALONG`. The pilot's predictions are unbiased for any number of
+/// Largest number of paths of all tiles together, a limit on the work. Large images get fewer paths per tile to meet
+/// the limit, but at least `MIN_ALONG` × `MIN_ALONG`. The pilot's predictions are unbiased for any number of
 /// paths. [convention]
 const MAX_TOTAL_PATHS: usize = 1 << 17;
 /// Largest and smallest number of paths along each side of a tile. Both are powers of two, as is the side of a tile.
