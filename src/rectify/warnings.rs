@@ -98,7 +98,7 @@ impl View {
     }
 }
 
-/// The area of the photo that a pixel of the unwarped plane covers.
+/// The footprint of a pixel of the unwarped plane: the area of the photo that the pixel covers.
 struct Footprint {
     /// Centre of the footprint in pixels of the photo.
     place: DVec2,

@@ -16,7 +16,7 @@ pub const MAX_PRIMARIES: usize = 64;
 /// Weight of the squared drives relative to the colour error: only large enough to select among mixtures of equal
 /// colour. It lies far above the rounding of f64 (2e-16) and far below `MAX_RELATIVE_MISS`. [rounding]
 const REGULARISATION: f64 = 1e-9;
-/// A colour counts as reached if its relative error is at most this. [rounding]
+/// A colour counts as reached if its error, relative to the norm of the wanted RGB colour, is at most this. [rounding]
 const MAX_RELATIVE_MISS: f64 = 1e-6;
 
 #[derive(Clone, Debug, PartialEq)]

@@ -18,7 +18,8 @@ pub(super) struct Terms<'a> {
 
 /// Maximum number of rounds over all groups; a few suffice. [convention]
 const MAX_ROUNDS: usize = 100;
-/// A decrease of the sum counts as zero if it is at most this, relative to the squared targets. [rounding]
+/// A decrease of the sum of squared residuals counts as zero if it is at most this share of the sum of the squared
+/// targets. [rounding]
 const ROUNDING: f64 = 1e-14;
 
 /// The current powers, the index of the level chosen for each group, and the light of each term under these powers.

@@ -118,7 +118,8 @@ pub fn run(world: &World, place: &CalculationPoints, params: &Params, job: Job) 
 }
 
 /// Learns from a few paths which lights reach the points. Skips the learning if the calculation itself traces fewer
-/// than `MIN_RATIO` times as many paths. Returns the world in which the calculation traces its paths.
+/// than `MIN_RATIO` times as many paths as the learning would trace. Returns the world in which the calculation traces
+/// its paths.
 fn learn(learning: &World, receivers: &Receivers, params: &Params, job: Job) -> Result<World> {
     let points = params.columns * params.rows;
     let stride = points.div_ceil(MAX_LEARNING_POINTS);

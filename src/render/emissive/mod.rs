@@ -200,7 +200,8 @@ impl Emitters {
 
     /// Samples a point of a piece (an undivided triangle, a tile of a textured triangle, or a patch of a luminaire).
     /// Points of a tile are sampled in proportion to the emission at the point, all others uniformly on their triangle.
-    /// Returns the index of the emitter and the barycentric coordinates of the point.
+    /// Returns the index of the emitter and the barycentric coordinates of the point; `None` if rounding
+    /// selected a texel of a tile outside the triangle.
     #[inline]
     pub fn sample(&self, piece: usize, (u, v): (f64, f32)) -> Option<(usize, Vec2)> {
         match self.piece(piece) {

@@ -154,7 +154,8 @@ impl Tiling {
     }
 
     /// Samples a point of a tile in proportion to its emission: `u` selects the texel. The remainder of `u`, rescaled
-    /// to `[0, 1]`, and `v` select the point within the texel. Returns barycentric coordinates.
+    /// to `[0, 1]`, and `v` select the point within the texel. Returns barycentric coordinates; `None` if rounding
+    /// selected a texel outside the triangle.
     pub fn sample(&self, tile: &Tile, (u, v): (f64, f32)) -> Option<Vec2> {
         let (shares, target) = (&tile.shares, (u as f32).min(1.0 - f32::EPSILON));
         // Count the entries up to the target instead of bisecting: the table is in the cache, and the count has no

@@ -49,7 +49,8 @@ impl Statistics {
         self.mean_sum / f64::from(self.pixels.max(1))
     }
 
-    /// Returns the root mean square of the pixels' standard errors, divided by the mean radiance of the pixels.
+    /// Returns the root mean square of the pixels' standard errors, divided by the mean radiance of the pixels; 0 if
+    /// all variances are 0.
     pub fn error(&self) -> f64 {
         let variance = self.variance_sum / f64::from(self.pixels.max(1));
         if variance == 0.0 { 0.0 } else { variance.sqrt() / self.mean_radiance() }
