@@ -42,7 +42,7 @@ impl<const N: usize> Bounds<N> {
         std::array::from_fn(|i| self.min[i] + share[i] * (self.max[i] - self.min[i]))
     }
 
-    /// Moves the point by whole periods into the bounds; the function has the same value there.
+    /// Moves each unbounded variable by whole periods into its bounds; the function has the same value there.
     pub fn wrapped(&self, x: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| {
             if self.is_open(i) { self.min[i] + (x[i] - self.min[i]).rem_euclid(self.period[i]) } else { x[i] }

@@ -100,8 +100,8 @@ pub struct Placement {
 /// Maximum number of cells along each side of the importance map in the search; larger maps are reduced. The bench
 /// prints the time of the search and the light that the search gains. [bench relight]
 const MAX_CELLS: usize = 64;
-/// The search descends from this number of the best starting points. The bench prints the time of the search and the
-/// light that the search gains.
+/// The search descends from this number of the best starting points, and always from the current placement. The bench
+/// prints the time of the search and the light that the search gains.
 /// [bench relight]
 const MAX_DESCENTS: usize = 8;
 
