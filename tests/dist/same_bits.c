@@ -73,7 +73,7 @@ static void hash_rendering(void) {
     check(luxfer_render_create(context, &render), "room");
     check(luxfer_render_set_scene(render, scene), "room");
     check(luxfer_render_start(render, &params, &job), "room");
-    finish(job, "room");
+    wait_and_release(job, "room");
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "room");
     hash_image("room", image);
 
@@ -85,7 +85,7 @@ static void hash_rendering(void) {
     check(luxfer_illuminance_params_init(&lux, sizeof lux), "lux");
     lux.columns = 11, lux.rows = 20, lux.samples = 16;
     check(luxfer_illuminance_start_grid(illuminance, &grid, &lux, &job), "lux");
-    finish(job, "lux");
+    wait_and_release(job, "lux");
     check(luxfer_illuminance_get_image(illuminance, LUXFER_ILLUMINANCE_LUX, &image), "lux");
     hash_image("lux", image);
     luxfer_release(illuminance);
@@ -105,7 +105,7 @@ static void set_photo(luxfer_transfer *transfer) {
     params.width = 300, params.height = 200, params.samples = 4;
     check(luxfer_demo_photo_create(context, &demo), "photo");
     check(luxfer_demo_photo_start(demo, &params, &job), "photo");
-    finish(job, "photo");
+    wait_and_release(job, "photo");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_PICTURE, &photo), "photo");
     check(luxfer_demo_photo_get_image(demo, LUXFER_DEMO_PHOTO_STROKES, &drawing), "photo");
     check(luxfer_image_get_size(photo, &width, &height, NULL), "photo");
@@ -145,7 +145,7 @@ static void hash_transfer(const char *folder) {
     render.width = 96, render.height = 54, render.samples = 4;
     params.render = &render;
     check(luxfer_transfer_start(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_RENDER, &params, &job), "transfer");
-    finish(job, "transfer");
+    wait_and_release(job, "transfer");
     for (k = 0; k < sizeof images / sizeof *images; k++) {
         check(luxfer_transfer_get_image(transfer, images[k].which, &image), images[k].name);
         hash_image(images[k].name, image);
@@ -173,7 +173,7 @@ static luxfer_guides *guides_of(luxfer_demo which) {
     check(luxfer_guides_create(context, &guides), "guides");
     check(luxfer_guides_set_scene(guides, scene), "guides");
     check(luxfer_guides_start(guides, &params, &job), "guides");
-    finish(job, "guides");
+    wait_and_release(job, "guides");
     luxfer_release(scene);
     return guides;
 }
@@ -191,7 +191,7 @@ static void hash_stylisation(void) {
     check(luxfer_stylize_set_artwork(stylize, image), "artwork");
     hash_image("artwork", image);
     check(luxfer_stylize_start(stylize, NULL, &job), "stylised");
-    finish(job, "stylised");
+    wait_and_release(job, "stylised");
     check(luxfer_stylize_get_image(stylize, LUXFER_STYLIZE_IMAGE_PICTURE, &image), "stylised");
     hash_image("stylised", image);
     luxfer_release(stylize);

@@ -186,7 +186,7 @@ public:
     Result<> intersect(Span<const luxfer_ray> rays, Span<luxfer_hit> hits) const {
         if (rays.size() != hits.size())
             return detail::fail<void>(Error(LUXFER_INVALID_ARGUMENT, "there must be as many hits as rays"));
-        return call(luxfer_scene_intersect, rays.data(), rays.size(), 0, hits.data(), 0);
+        return call(luxfer_scene_intersect, rays.data(), rays.size(), sizeof(luxfer_ray), hits.data(), sizeof(luxfer_hit));
     }
 
     /// The features that the scene requires of a renderer. Its field bounces is the number of bounces beyond
