@@ -119,7 +119,8 @@ impl Channel {
     fn solve(&self, target: f64) -> Answer {
         let response = mean(&self.response);
         let noise = standard_error(&self.response);
-        // The jackknife leaves out one batch at a time: at least two batches must have a positive denominator.
+        // `scale` divides by the mean of `own`. The jackknife leaves out one batch at a time, so at least two batches
+        // need a positive value of `own`; otherwise the divisor could become 0.
         let paired = self.squares.is_none_or(|[own, _]| own.iter().filter(|square| **square > 0.0).count() > 1);
         if response.is_nan() || response <= 3.0 * noise || !paired {
             return Answer { scale: 0.0, half_width: 0.0, status: TargetStatus::Dark, deviations: [0.0; BATCHES] };

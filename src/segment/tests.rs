@@ -197,7 +197,7 @@ fn without_strokes_the_ceiling_is_proposed_and_strokes_correct_it() {
     }
     let wall = propose(&[Stroke { positive: true, ..strokes[3].clone() }]).unwrap();
     assert_eq!(iou(&wall.mask, |i| faces[i] == 2), 1.0);
-    // With a negative stroke on the ceiling, the result is still a proposal.
+    // A negative stroke alone, here on the ceiling, also gives a proposal.
     let without_lamps = propose(&[line(false, &[[60.0, 6.0], [60.0, 10.0]])]).unwrap();
     assert!(without_lamps.is_proposed);
     let off = Stroke { pixels: vec![(WIDTH * HEIGHT) as u32], positive: true };

@@ -117,7 +117,8 @@ impl Row<'_> {
         }
     }
 
-    /// Adds to the row the lights that are copied patch by patch.
+    /// Adds to the row the lights of exemplar `k` that the patches copy pixel by pixel, weighted by its share of the
+    /// blend. Lamps that are placed as a whole are drawn elsewhere.
     fn add_patches(&mut self, source: &TexelSource, blend: &Blend, k: usize) {
         let size = DVec2::new(blend.width as f64, blend.height as f64);
         for x in self.first..self.first + self.coverage.len() {

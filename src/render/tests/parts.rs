@@ -210,7 +210,8 @@ fn damaged_files_are_errors_and_a_cancel_leaves_none() {
             }
         }
         std::fs::write(&path, &damaged).unwrap();
-        // Changed pixel values go unnoticed. Any other corruption must give an error and nothing worse.
+        // Damage may go unnoticed, for example in pixel values. Nothing may panic, and an error of the merge must be
+        // `Format` or `InvalidArgument`.
         if let Ok(file) = File::open(&path) {
             let _ = merged(&world, &params, &[file]);
         }
