@@ -230,8 +230,8 @@ fn agreement(own: &[f64], p: &[f64], q: &[f64], weight: &[f64], inverse: [f64; 3
         for lane in 0..LANES {
             let (own, p, q) = (own[lane] * inverse[0], p[lane] * inverse[1], q[lane] * inverse[2]);
             let (first, second) = if p > q { (p, q) } else { (q, p) };
-            // A ray to a seam meets two faces at nearly the same distance. The seam is parallel to the segments if
-            // these faces are perpendicular to the axes of `p` and `q`.
+            // A ray to a seam meets two faces at nearly the same distance. If these are the faces perpendicular to the
+            // axes of `p` and `q`, the seam runs along the axis of the segments (`own`): add a bonus.
             let off = (first - second) / (first * SEAM_WIDTH);
             let near = 1.0 - off * off;
             let seam = if second >= own && near > 0.0 { SEAM * near } else { 0.0 };

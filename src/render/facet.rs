@@ -94,7 +94,8 @@ impl Facet {
         Self { material: self.material | SMOOTH, ..*self }
     }
 
-    /// Whether the shading normal may differ from the geometric normal.
+    /// Whether the interpolated vertex normals may differ from the geometric normal. A normal map may change the
+    /// shading normal even if this is false.
     #[inline]
     pub fn is_smooth(&self) -> bool {
         self.material & SMOOTH != 0

@@ -147,8 +147,8 @@ fn a_limit_binds_only_where_it_is_broken() {
     }
     assert!((free.scale.x - (free.scale.y + free.scale.z) / 2.0).abs() < 1e-9);
     assert!(free.half_width.x > 0.0 && free.error() < 0.006 && free.delta_e < 1.0, "{free:?}");
-    // If the scale of the other channels violates a lower or an upper limit, the limited channel meets its limit
-    // exactly.
+    // Channel x has a limit, and the others have exact targets. If the scale that fits the others would violate the
+    // limit of x, channel x meets its limit exactly.
     for (factor, constraint) in [(1.5, Constraint::AtLeast), (0.5, Constraint::AtMost)] {
         let bound = least(truth * Vec3::new(factor, 1.0, 1.0), constraint);
         let exact = least(truth * Vec3::new(factor, 1.0, 1.0), Constraint::Exactly);

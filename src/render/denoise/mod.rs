@@ -44,8 +44,9 @@ use statement::Statement;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    /// Strength of the smoothing, in `[0, 10]`. The filter tolerates a squared difference between the pilots of
-    /// neighbours in proportion to their variances; `strength` scales this tolerance. 0 leaves the image unchanged.
+    /// Strength of the smoothing, in `[0, 10]`. The filter averages neighbouring pixels whose pilots (first estimates
+    /// of their values, [`Pilot`]) differ by no more than noise explains. `strength` scales the squared difference that
+    /// counts as noise. 0 leaves the image unchanged.
     pub strength: f32,
 }
 
