@@ -208,7 +208,7 @@ class Transfer(Case):
         with self.assertRaises(errors.Degenerate):
             segment.run()
         with self.assertRaisesRegex(errors.InvalidArgument, "strokes are for 40 x 60 pixels"):
-            segment.set_strokes(luxfer.Strokes(context(), 40, 60), "plane")
+            segment.set_strokes("plane", luxfer.Strokes(context(), 40, 60))
 
 
 class Rendering(Case):
@@ -385,7 +385,7 @@ class Scenes(Case):
         with self.assertRaisesRegex(errors.InvalidArgument, "element 1 of mesh.colours"):
             scene.add_mesh(corners, triangle, colours=colours * [1, 2, 1, 1])
         with self.assertRaisesRegex(errors.NotFound, "mesh 1 has no colours"):
-            scene._call("read_vertices", 1, luxfer.abi.LUXFER_VERTEX_COLOUR, 3, None)
+            scene._call("read_vertices", 1, luxfer.abi.LUXFER_VERTEX_COLOUR, None, 3)
 
     def test_arrays_go_in_and_come_out(self):
         vertices = np.zeros(4, [("p", "f4", 3), ("n", "f4", 3), ("t", "f4", 2), ("pad", "u1", 4)])  # interleaved
