@@ -7,8 +7,7 @@
 
 use super::guard::enter;
 use super::handle::Owned;
-use super::pointer::{bytes, bytes_mut, floats};
-use super::query::strided;
+use super::pointer::{bytes, bytes_mut, floats, strided};
 use super::scene::luxfer_scene;
 use super::status::luxfer_status;
 use crate::error::Result;

@@ -31,6 +31,22 @@ pub(super) fn set_optional<T>(place: *mut T, value: T) {
     }
 }
 
+/// Returns the stride in bytes of an array of `count` elements, of which 0 stands for the size of an element, and the
+/// size of the array. `count` is not 0.
+pub(super) fn strided<T>(count: usize, stride: usize, name: &str) -> Result<(usize, usize)> {
+    let element = size_of::<T>();
+    let stride = if stride == 0 { element } else { stride };
+    if stride < element {
+        let range = format!("it must be 0 or at least {element} bytes");
+        return Err(Error::argument(format!("the stride of {name} is {stride}; {range}")));
+    }
+    let size = stride.checked_mul(count - 1).and_then(|size| size.checked_add(element));
+    let size = size.ok_or_else(|| {
+        Error::argument(format!("the count of {name} is {count}; that is more than the address space holds"))
+    })?;
+    Ok((stride, size))
+}
+
 /// Reads the first `N` floats from bytes of the caller, at any alignment. Floats beyond the end of the bytes are 0.
 pub(super) fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
     let mut values = [0.0; N];

@@ -5,11 +5,10 @@
 
 use super::guard::enter;
 use super::handle::Owned;
-use super::pointer::{bytes, bytes_mut, floats};
+use super::pointer::{bytes, bytes_mut, floats, strided};
 use super::scene::luxfer_scene;
 use super::status::luxfer_status;
 use crate::accel::Ray;
-use crate::error::{Error, Result};
 use crate::exec;
 use crate::render::World;
 use glam::Vec3;
@@ -111,19 +110,4 @@ fn nearest(world: &World, ray: &[u8]) -> [u32; 5] {
         }
         None => [f32::INFINITY.to_bits(), LUXFER_NONE, LUXFER_NONE, 0, 0],
     }
-}
-
-/// Returns the stride in bytes of an array of `count` elements, of which 0 stands for the size of an element, and the
-/// size of the array. `count` is not 0.
-pub(super) fn strided<T>(count: usize, stride: usize, name: &str) -> Result<(usize, usize)> {
-    let element = size_of::<T>();
-    let stride = if stride == 0 { element } else { stride };
-    if stride < element {
-        let range = format!("it must be 0 or at least {element} bytes");
-        return Err(Error::argument(format!("the stride of {name} is {stride}; {range}")));
-    }
-    let size = stride.checked_mul(count - 1).and_then(|size| size.checked_add(element));
-    let size =
-        size.ok_or_else(|| Error::argument(format!("count is {count}; that is more than the address space holds")))?;
-    Ok((stride, size))
 }

@@ -5,7 +5,7 @@
 
 use super::guard::enter;
 use super::params::{self, Report, Versioned, versioned};
-use super::pointer::{bytes, set_optional, text};
+use super::pointer::{bytes, set_optional, strided, text};
 use super::scene::{luxfer_scene, missing};
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
@@ -194,16 +194,10 @@ fn array<const N: usize, T: Copy + Default>(
     name: &str,
     decode: fn([u8; 4]) -> T,
 ) -> Result<Vec<[T; N]>> {
-    let row = 4 * N;
     if count == 0 {
         return Err(Error::argument(format!("{name} has no elements; it needs at least one")));
     }
-    let stride = if stride == 0 { row } else { stride };
-    if stride < row {
-        return Err(Error::argument(format!("the stride of {name} is {stride}; it must be 0 or at least {row} bytes")));
-    }
-    let size = stride.checked_mul(count - 1).and_then(|s| s.checked_add(row));
-    let size = size.ok_or_else(|| Error::argument(format!("{name} exceeds the address space")))?;
+    let (stride, size) = strided::<[T; N]>(count, stride, name)?;
     let bytes = bytes(data.cast(), size, name)?;
     let mut rows = try_vec(count, [T::default(); N])?;
     for (out, row) in rows.iter_mut().zip(bytes.chunks(stride)) {
