@@ -1,6 +1,6 @@
 //! Replaces lamps that few photo pixels show by similar lamps that many photo pixels show, because these are sharper.
 
-use super::design::Designs;
+use super::designs::Designs;
 use super::instance::Instance;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
