@@ -5,6 +5,7 @@ pub mod bars;
 pub mod components;
 pub mod foreshortening;
 pub mod fragments;
+pub mod joins;
 pub mod measured_lamp;
 pub mod panes;
 pub mod roles;
