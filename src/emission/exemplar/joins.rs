@@ -9,45 +9,23 @@
 //!   alone or in a longer row.
 
 use super::bars::LitPlane;
-use super::components::{self, Component};
-use super::foreshortening::LocalMap;
-use super::roles;
+use super::components::{self, Component, Components};
+use super::measured_lamp::{MAX_SIDE_DIFFERENCE, MeasuredLamp};
+use super::panes::MAX_LEADING_SHARE;
+use super::roles::{self, Role};
 use crate::error::Result;
 use crate::image::{Image, try_collect};
 use crate::job::Job;
-use glam::DVec2;
 
-/// The dark strip between two parts of a lamp is at most this share of the lamp's side. [judged on 77 photos]
+/// The dark strip between two parts of a lamp is at most this share of the lamp's side. [bench photos:real] shows no
+/// difference between 0.1 and 0.4.
 const MAX_STRIP: f64 = 0.2;
-/// The strip counts as a narrow bar if it is at most this share of the lamp's side. [judged on 77 photos]
-const MAX_BAR: f64 = 0.08;
-/// The two parts of a lamp begin and end at the same positions along the strip; they differ by at most this share of
-/// the strip's length. [judged on 77 photos]
-const MAX_OFFSET: f64 = 0.15;
-/// Two lamps are equal if their sides differ by at most this share, plus a measurement error of [`NOISE`] photo
-/// pixels. [judged on 77 photos]
-const MAX_DIFFERENCE: f64 = 0.12;
-const NOISE: f64 = 1.0;
-/// Lights cover at least this share of the box around a lamp without the strip. Only rectangles do, and only rectangles
-/// are joined: ragged lights may be parts of anything. [judged on 77 photos]
+/// Lights cover at least this share of the box around a lamp without the strip. A disc covers π/4 = 0.79 of its box, and
+/// a rectangle with frayed edges less than all of it. Ragged lights may be parts of anything. [convention]
 const MIN_COVERED: f64 = 0.85;
 /// Images with more lights than this are left as they are: the search compares all pairs of lights, and halls of so
 /// many lamps show enough lamps in one piece. [convention]
 const MAX_LIGHTS: usize = 400;
-
-/// Two lights that may be parts of one lamp.
-struct Pair {
-    /// The indices of the lights.
-    parts: [usize; 2],
-    /// Sides of the box around both, in pixels.
-    size: DVec2,
-    /// Length of a photo pixel at the lamp, in pixels.
-    blur: DVec2,
-    /// The first and the last column and row between the parts.
-    strip: [[usize; 2]; 2],
-    /// Whether the strip is a narrow bar.
-    is_bar: bool,
-}
 
 /// Returns the light mask with the strips inside lamps filled; `None` if no lamp consists of two parts.
 pub fn join(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
@@ -57,28 +35,9 @@ pub fn join(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
         return Ok(None);
     }
     job.check()?;
-    let pairs = pairs(plane, &found.list);
-    if pairs.is_empty() {
-        return Ok(None);
-    }
-    let shown = try_collect((0..width * height).map(|i| plane.is_valid(i)))?;
-    let roles = roles::classify(&found, &shown, width, height);
-    let pairs_of = |k: usize| pairs.iter().filter(|p| p.parts.contains(&k)).count();
-    let is_alone = |p: &Pair| p.is_bar && p.parts.iter().all(|k| pairs_of(*k) == 1);
-    let lamps = || found.list.iter().enumerate().filter(|(k, lamp)| roles[*k].is_whole() && is_rectangle(lamp));
-    let is_one_lamp = |pair: &&Pair| {
-        let is_part = |k: usize| pair.parts.contains(&k);
-        if lamps().any(|(k, lamp)| !is_part(k) && pair.equals(size(lamp))) {
-            return true;
-        }
-        let is_twin = |p: &Pair| p.parts != pair.parts && is_alone(p) && pair.equals(p.size);
-        let part = size(&found.list[pair.parts[0]]);
-        let is_panel = |lamp: &Component| are_equal(part, size(lamp), pair.blur);
-        let is_unit = lamps().any(|(k, lamp)| pairs_of(k) != 1 && is_panel(lamp));
-        is_alone(pair) && !is_unit && pairs.iter().any(is_twin)
-    };
+    let lights = Lights::new(plane, &found)?;
     let mut joined = None;
-    for pair in pairs.iter().filter(is_one_lamp) {
+    for pair in lights.pairs.iter().filter(|pair| lights.are_one_lamp(pair)) {
         let light = match &mut joined {
             Some(light) => light,
             None => joined.insert(plane.light.try_clone()?),
@@ -88,42 +47,76 @@ pub fn join(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     Ok(joined)
 }
 
-/// The pairs of lights that have the form of a lamp in two parts.
-fn pairs(plane: &LitPlane, lights: &[Component]) -> Vec<Pair> {
-    let mut pairs = Vec::new();
-    for (i, a) in lights.iter().enumerate() {
-        for (j, b) in lights.iter().enumerate().skip(i + 1) {
-            let Some((strip, share)) = strip_between(a, b) else { continue };
-            let both = united(a, b);
-            let of_strip = (0..2).map(|k| strip[1][k] + 1 - strip[0][k]).product::<usize>() as f64;
-            if (both.area as f64) < MIN_COVERED * (size(&both).element_product() - of_strip) {
-                continue;
+/// Two lights that lie side by side like two parts of a lamp.
+struct Pair {
+    /// The indices of the lights.
+    parts: [usize; 2],
+    /// Both lights together.
+    both: MeasuredLamp,
+    /// The first and the last column and row between the parts.
+    strip: [[usize; 2]; 2],
+    /// Whether the strip is a narrow bar.
+    is_bar: bool,
+}
+
+struct Lights {
+    sizes: Vec<MeasuredLamp>,
+    /// Whether each light is a whole, rectangular lamp, or looks like one.
+    is_lamp: Vec<bool>,
+    pairs: Vec<Pair>,
+    /// Number of pairs to which each light belongs.
+    pairs_of: Vec<usize>,
+}
+
+impl Lights {
+    fn new(plane: &LitPlane, found: &Components) -> Result<Self> {
+        let measured = |k: usize, lamp: &Component| MeasuredLamp::new(k, lamp, lamp.area as f64, plane.to_photo);
+        let mut pairs = Vec::new();
+        for (i, a) in found.list.iter().enumerate() {
+            for (j, b) in found.list.iter().enumerate().skip(i + 1) {
+                let Some((strip, share)) = strip_between(a, b) else { continue };
+                let both = united(a, b);
+                let strip_area: usize = (0..2).map(|k| strip[1][k] + 1 - strip[0][k]).product();
+                if is_rectangle(&both, strip_area) {
+                    pairs.push(Pair {
+                        parts: [i, j],
+                        both: measured(i, &both),
+                        strip,
+                        is_bar: share <= MAX_LEADING_SHARE,
+                    });
+                }
             }
-            let blur = LocalMap::new(plane.to_photo, both.centre).photo_pixel();
-            pairs.push(Pair { parts: [i, j], size: size(&both), blur, strip, is_bar: share <= MAX_BAR });
         }
+        let shown = try_collect((0..plane.light.data.len()).map(|i| plane.is_valid(i)))?;
+        let roles: Vec<Role> = roles::classify(found, &shown, plane.light.width, plane.light.height);
+        let lamps = || found.list.iter().enumerate();
+        let pairs_of = |k: usize| pairs.iter().filter(|pair| pair.parts.contains(&k)).count();
+        Ok(Self {
+            sizes: lamps().map(|(k, lamp)| measured(k, lamp)).collect(),
+            is_lamp: lamps().map(|(k, lamp)| roles[k].is_whole() && is_rectangle(lamp, 0)).collect(),
+            pairs_of: lamps().map(|(k, _)| pairs_of(k)).collect(),
+            pairs,
+        })
     }
-    pairs
-}
 
-impl Pair {
-    /// Whether both parts together are as large as another lamp.
-    fn equals(&self, size: DVec2) -> bool {
-        are_equal(self.size, size, self.blur)
+    /// Whether the two lights of a pair are parts of one lamp.
+    fn are_one_lamp(&self, pair: &Pair) -> bool {
+        let lamps = || (0..self.sizes.len()).filter(|k| self.is_lamp[*k] && !pair.parts.contains(k));
+        if lamps().any(|k| self.sizes[k].is_as_large(&pair.both)) {
+            return true;
+        }
+        let part = &self.sizes[pair.parts[0]];
+        let is_alone = |pair: &Pair| pair.is_bar && pair.parts.iter().all(|k| self.pairs_of[*k] == 1);
+        let is_twin = |other: &Pair| other.parts != pair.parts && is_alone(other) && other.both.is_as_large(&pair.both);
+        let are_panels = lamps().any(|k| self.pairs_of[k] != 1 && self.sizes[k].is_as_large(part));
+        is_alone(pair) && !are_panels && self.pairs.iter().any(is_twin)
     }
 }
 
-/// Whether two lamps are equally large. `blur` is the length of a photo pixel along x and y.
-fn are_equal(a: DVec2, b: DVec2, blur: DVec2) -> bool {
-    (a - b).abs().cmple(a.max(b) * MAX_DIFFERENCE + blur * NOISE).all()
-}
-
-fn size(lamp: &Component) -> DVec2 {
-    DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64)
-}
-
-fn is_rectangle(lamp: &Component) -> bool {
-    lamp.area as f64 >= MIN_COVERED * size(lamp).element_product()
+/// Whether a light covers the box around it like a rectangle; `strip` pixels of the box do not count.
+fn is_rectangle(light: &Component, strip: usize) -> bool {
+    let box_area: usize = light.size().iter().product();
+    light.area as f64 >= MIN_COVERED * (box_area - strip) as f64
 }
 
 /// The component that covers two others.
@@ -134,8 +127,9 @@ fn united(a: &Component, b: &Component) -> Component {
     Component { area, centre: (a.centre * a.area as f64 + b.centre * b.area as f64) / area as f64, min, max }
 }
 
-/// The strip between two parts of a lamp, as its first and its last column and row, and the share of the lamp's side
-/// that it takes. `None` if the lights do not lie side by side like two parts of a lamp.
+/// The strip between two lights, as its first and its last column and row, and the share that it takes of the side of
+/// both together. `None` if the lights do not lie side by side like two parts of a lamp: they must begin and end at
+/// about the same positions along the strip.
 fn strip_between(a: &Component, b: &Component) -> Option<([[usize; 2]; 2], f64)> {
     (0..2).find_map(|across| {
         let along = 1 - across;
@@ -143,10 +137,8 @@ fn strip_between(a: &Component, b: &Component) -> Option<([[usize; 2]; 2], f64)>
         let gap = second.min[across].checked_sub(first.max[across] + 1).filter(|gap| *gap > 0)?;
         let share = gap as f64 / (second.max[across] + 1 - first.min[across]) as f64;
         let (low, high) = (a.min[along].max(b.min[along]), a.max[along].min(b.max[along]));
-        let slack = MAX_OFFSET * (a.max[along].max(b.max[along]) + 1 - a.min[along].min(b.min[along])) as f64;
-        let has_equal_ends = a.min[along].abs_diff(b.min[along]) as f64 <= slack
-            && a.max[along].abs_diff(b.max[along]) as f64 <= slack
-            && low <= high;
+        let length = a.max[along].max(b.max[along]) + 1 - a.min[along].min(b.min[along]);
+        let has_equal_ends = low <= high && (length - (high + 1 - low)) as f64 <= MAX_SIDE_DIFFERENCE * length as f64;
         let mut strip = [[low; 2], [high; 2]];
         (strip[0][across], strip[1][across]) = (first.max[across] + 1, second.min[across] - 1);
         (has_equal_ends && share <= MAX_STRIP).then_some((strip, share))

@@ -18,7 +18,7 @@ use super::bloom::common_side;
 use super::design::{Design, Shape};
 use super::discs;
 use super::luminaire::Luminaire;
-use super::member::Member;
+use super::member::{MAX_ALIGNED_ANGLE, Member};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::emission::exemplar::roles::Role;
@@ -33,9 +33,6 @@ const MIN_ELLIPSE_GAIN: f64 = 0.03;
 /// compared with the shape that has the lamp's own sides. Agreement is the area of their intersection divided by the
 /// area of their union. [judged on 20 photos]
 const MIN_AGREEMENT: f64 = 0.72;
-/// Lamps count as aligned with the axes of the unwarped photo if their angle to an axis is at most this, in radians.
-/// [judged on 20 photos]
-const MAX_ALIGNED_ANGLE: f64 = 0.07;
 
 /// The fit of a lamp of the exemplar to a design. Lengths are in unwarped pixels.
 #[derive(Clone, Copy, Debug)]

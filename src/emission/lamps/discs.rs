@@ -1,7 +1,8 @@
 //! Discs that look long in the unwarped photo, because of bloom or because they protrude from the plane.
 
 use super::bloom::{BloomFit, MIN_BLOOM_LAMPS, common_side};
-use super::member::{Member, principal};
+use super::member::{MAX_ALIGNED_ANGLE, Member, principal};
+use crate::emission::exemplar::measured_lamp::MAX_SITE_DIFFERENCE;
 use glam::DVec2;
 
 /// Limits for discs that blur has elongated. [judged on 20 photos]
@@ -16,14 +17,6 @@ const MIN_COS_ALONG: f64 = 0.9;
 /// vectors at the angles 2α is longer than this. The mean has length 1 if all axes are parallel. Lamps that are
 /// elongated along their own blur, but not in a common direction, are discs, whatever their size. [judged on 20 photos]
 const MIN_COMMON_DIRECTION: f64 = 0.93;
-/// Limits for lamps that protrude from the plane ([`take_protruding`]). [judged on 77 photos]
-/// - `MIN_COS_RADIAL`: minimum cosine of the angle between the long axes of the lamp and of a photo pixel: 4 degrees.
-/// - `MAX_PARALLEL`: maximum length of the mean of the unit vectors at twice the angles of the lamps' long axes, which
-///   is 1 if all axes are parallel. The limit corresponds to a standard deviation of 6 degrees.
-/// - `MIN_WIDTH_RATIO`: minimum ratio of the widths of two lamps of one kind.
-const MIN_COS_RADIAL: f64 = 0.9976;
-const MAX_PARALLEL: f64 = 0.98;
-const MIN_WIDTH_RATIO: f64 = 0.7;
 
 /// Whether blur may have elongated a lamp: the lamp is elongated in the unwarped photo, a photo pixel is too, and their
 /// long axes differ by at most the angle with the cosine `min_cos`.
@@ -39,14 +32,17 @@ fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
 /// Unwarping projects a body that hangs below the plane, and its glare, away from the foot of the perpendicular from
 /// the camera to the plane. It also stretches photo pixels in this direction. Protruding lamps therefore point away
 /// from one point, and the lower they hang, the longer they look. Kinds of lamps protrude if they point in this
-/// direction to within [`MIN_COS_RADIAL`], and if the directions of all these lamps differ ([`MAX_PARALLEL`]). One lamp
-/// alone gives no evidence, nor do lamps in one line with the camera, such as a continuous row of tubes. Kinds that are
-/// as wide as one of these protrude as well if they point in this direction to within [`MIN_COS_ALONG`].
+/// direction to within [`MAX_ALIGNED_ANGLE`], and if their lamps are not parallel. One lamp alone gives no evidence,
+/// nor do lamps in one line with the camera, such as a continuous row of tubes. Kinds that are as wide as one of these
+/// protrude as well if they point in this direction to within [`MIN_COS_ALONG`].
 pub fn take_protruding(kinds: &mut Vec<Vec<Member>>) -> Vec<Vec<Member>> {
     let points_away = |kind: &Vec<Member>, min_cos: f64| kind.iter().all(|lamp| is_smeared(lamp, min_cos));
-    let certain: Vec<&Member> = kinds.iter().filter(|kind| points_away(kind, MIN_COS_RADIAL)).flatten().collect();
+    let certain: Vec<&Member> =
+        kinds.iter().filter(|kind| points_away(kind, MAX_ALIGNED_ANGLE.cos())).flatten().collect();
     let turns: DVec2 = certain.iter().map(|lamp| double_angle(lamp)).sum();
-    if certain.is_empty() || turns.length() > MAX_PARALLEL * certain.len() as f64 {
+    // The mean of unit vectors at twice the angles, whose angles deviate by 2σ, has the length exp(-(2σ)² / 2).
+    let parallel = (-2.0 * MAX_ALIGNED_ANGLE.powi(2)).exp();
+    if certain.is_empty() || turns.length() > parallel * certain.len() as f64 {
         return Vec::new();
     }
     let widths: Vec<f64> = certain.iter().map(|lamp| width(lamp).0).collect();
@@ -67,9 +63,9 @@ pub fn take_protruding(kinds: &mut Vec<Vec<Member>>) -> Vec<Vec<Member>> {
     groups
 }
 
-/// Whether two widths differ by at most the factor [`MIN_WIDTH_RATIO`].
+/// Whether two widths may belong to lamps of one kind.
 fn are_alike(a: f64, b: f64) -> bool {
-    a.min(b) >= MIN_WIDTH_RATIO * a.max(b)
+    (a - b).abs() <= MAX_SITE_DIFFERENCE * a.max(b)
 }
 
 /// The common diameter of lamps that are as wide as they should be long, without bloom, in unwarped pixels.

@@ -10,6 +10,8 @@ use crate::geometry::polygon;
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_PI_2;
 
+/// Two axes count as parallel if the angle between them is at most this, in radians. [judged on 20 photos]
+pub const MAX_ALIGNED_ANGLE: f64 = 0.07;
 /// Blur rounds the corners of a rectangle, so its sides are measured away from the corners. The length is a mean over
 /// the middle part of the width, and the width is a mean over the middle part of the length. The middle part has this
 /// share of the whole. [judged on 20 photos]
