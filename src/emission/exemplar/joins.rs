@@ -20,8 +20,8 @@ use crate::job::Job;
 /// The dark strip between two parts of a lamp is at most this share of the lamp's side. [bench photos:real] shows no
 /// difference between 0.1 and 0.4.
 const MAX_STRIP: f64 = 0.2;
-/// Lights cover at least this share of the box around a lamp without the strip. A disc covers π/4 = 0.79 of its box, and
-/// a rectangle with frayed edges less than all of it. Ragged lights may be parts of anything. [convention]
+/// Lights cover at least this share of the box around a lamp without the strip. A disc covers π/4 = 0.79 of its box,
+/// and a rectangle with frayed edges less than all of it. Ragged lights may be parts of anything. [convention]
 const MIN_COVERED: f64 = 0.85;
 /// Images with more lights than this are left as they are: the search compares all pairs of lights, and halls of so
 /// many lamps show enough lamps in one piece. [convention]
