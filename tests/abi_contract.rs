@@ -344,8 +344,9 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(add(&luxfer_mesh_params { position_stride: 8, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(add(&luxfer_mesh_params { vertex_count: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(add(&luxfer_mesh_params { position_stride: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), -1.0, 0.0, 0.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_emission(scene, 7, 1.0, 1.0, 1.0), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), [-1.0, 0.0, 0.0].as_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), null()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_emission(scene, 7, [1.0; 3].as_ptr()), LUXFER_NOT_FOUND);
 
         let mut counts = std::mem::zeroed::<luxfer_scene_counts>();
         assert_eq!(luxfer_scene_get_counts(scene, &mut counts, 0), LUXFER_INVALID_ARGUMENT);

@@ -174,7 +174,7 @@ fn waits_time_out_and_a_busy_object_refuses_changes() {
         // The running job blocks neither another renderer nor the scene.
         let other = renderer(context);
         let small = start(other, &render_params(8, 1));
-        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), 1.0, 1.0, 1.0), LUXFER_OK);
+        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), [1.0; 3].as_ptr()), LUXFER_OK);
         assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
         assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_CANCELLED);
         assert_eq!(luxfer_job_wait(small, -1, None, null_mut()), LUXFER_OK);

@@ -269,11 +269,11 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
     let below = host::image(context, 4, 2, -1.0);
     let mut grid = unsafe { std::mem::zeroed::<luxfer_illuminance_grid>() };
     unsafe {
-        assert_eq!(luxfer_scene_set_environment(scene, below, 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment(scene, sky, 1.0, -1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment(scene, sky, f32::MAX, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment(scene, scene.cast(), 1.0, 1.0, 1.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment(scene, sky, 10.0, 10.0, 10.0), LUXFER_OK, "{}", message(context));
+        assert_eq!(luxfer_scene_set_environment(scene, below, [1.0; 3].as_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, [1.0, -1.0, 1.0].as_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, [f32::MAX, 1.0, 1.0].as_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, scene.cast(), [1.0; 3].as_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, sky, [10.0; 3].as_ptr()), LUXFER_OK, "{}", message(context));
         let mut needed = std::mem::zeroed::<luxfer_requirements>();
         assert_eq!(luxfer_scene_get_requirements(scene, 0.0, &mut needed, size_of_val(&needed)), LUXFER_OK);
         assert_eq!(needed.lights, LUXFER_LIGHTS_ENVIRONMENT);

@@ -1216,25 +1216,21 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
                                        uint32_t mesh);
 
 /**
- * Sets the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
+ * Sets rgb, the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
  * LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
  */
 luxfer_status luxfer_relight_set_target(luxfer_relight *relight,
-                                        float red,
-                                        float green,
-                                        float blue);
+                                        const float rgb[3]);
 
 /**
- * Makes the target a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three
- * channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
- * scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the
- * limit. Any thread.
+ * Makes the target a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green,
+ * blue. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean scale
+ * of the channels without a limit, if this scale respects the limit; else the scale that just reaches the limit. Any
+ * thread.
  * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
  */
 luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
-                                            luxfer_constraint red,
-                                            luxfer_constraint green,
-                                            luxfer_constraint blue);
+                                            const luxfer_constraint constraint[3]);
 
 /**
  * Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The

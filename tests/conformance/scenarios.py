@@ -103,9 +103,9 @@ def scenes() -> Scenario:
     s.call("scene_export_memory", scene, ["callback", "write"], None)
     s.call("scene_get_counts", scene, *report("scene_counts"))
     s.call("scene_get_origin", scene, ROOM, ROOM, ROOM)
-    s.call("scene_set_environment", scene, None, 0.1, 0.2, 0.3)
-    s.call("scene_set_environment", scene, image, 1.0, 1.0, 1.0)
-    s.call("scene_set_emission", scene, 0, 1.0, 2.0, 3.0)
+    s.call("scene_set_environment", scene, None, array("float", 0.1, 0.2, 0.3))
+    s.call("scene_set_environment", scene, image, array("float", 1, 1, 1))
+    s.call("scene_set_emission", scene, 0, array("float", 1, 2, 3))
     s.call("scene_find_surface", scene, "Ceiling", *report("surface"))
     s.call("scene_set_material", scene, 0, struct("material_params", roughness=0.5))
     s.call("scene_get_material", scene, 0, *report("material_params"))
@@ -130,7 +130,7 @@ def scenes() -> Scenario:
     )  # fmt: skip
     s.call("scene_add_mesh", scene, coloured, None)
     s.call("scene_read_vertices", scene, 2, 4, ROOM, 3)
-    s.call("scene_place_emission", scene, "Ceiling", image, 9.0, 9.0, 9.0, ROOM, ROOM)
+    s.call("scene_place_emission", scene, "Ceiling", image, array("float", 9, 9, 9), ROOM, ROOM)
     s.make("demo_create_scene", s.context, 2)
     return s
 
@@ -264,8 +264,8 @@ def light() -> Scenario:
     relight = s.make("relight_create", s.context)
     s.references(relight)
     s.call("relight_set_scene", relight, scene, 1, 0)
-    s.call("relight_set_target", relight, 1.0, 1.0, 1.0)
-    s.call("relight_set_constraint", relight, 1, 0, 2)
+    s.call("relight_set_target", relight, array("float", 1, 1, 1))
+    s.call("relight_set_constraint", relight, array("int32_t", 1, 0, 2))
     s.run("relight_start", relight, struct("relight_params", paths=2048))
     s.call("relight_get_report", relight, *report("relight_report"))
     s.make("get_warnings", relight)
@@ -280,8 +280,8 @@ def lamps() -> Scenario:
     s.call("lamps_set_scene", stage, scene, 1)
     s.call("lamps_add_grid", stage, struct("illuminance_grid", across=array("float", 1, 0, 0), down=array("float", 0, 0, 1)), 500.0, 1.0)
     s.call("lamps_clear_goals", stage)
-    s.call("lamps_add_mesh", stage, 0, 0, 2.0, 2.0, 2.0, 1.0)
-    s.call("lamps_set_constraint", stage, 0, 1, 2, 0)
+    s.call("lamps_add_mesh", stage, 0, 0, array("float", 2, 2, 2), 1.0)
+    s.call("lamps_set_constraint", stage, 0, array("int32_t", 1, 2, 0))
     s.call("lamps_set_levels", stage, array("double", 0, 0.5, 1), 3)
     s.run("lamps_start", stage, struct("lamps_params", paths=2048))
     s.call("lamps_get_report", stage, *report("lamps_report"))
@@ -299,13 +299,13 @@ def lamps() -> Scenario:
     s.call("importance_respond", importance, texture, placement, *report("importance_report"))
     s.run("importance_start_placement", importance, texture, struct("placement_params", starts=4))
     s.call("importance_get_placement", importance, *report("placement"))
-    s.call("importance_solve", importance, texture, placement, 1.0, 1.0, 1.0, *report("relight_report"))
+    s.call("importance_solve", importance, texture, placement, array("float", 1, 1, 1), *report("relight_report"))
     return s
 
 
 def photometry() -> Scenario:
     s = Scenario()
-    s.call("colour_to_temperature", s.context, 1.0, 0.9, 0.7, ROOM, ROOM)
+    s.call("colour_to_temperature", s.context, array("double", 1, 0.9, 0.7), ROOM, ROOM)
     s.call("temperature_to_colour", s.context, 3000.0, 0.0, ROOM)
     s.call("image_get_glare", s.image(32, 24), 1.0, 0.0, *report("glare_report"))
     s.call("scene_get_glare", s.make("scene_create", s.context), array("float", 0, 0, 0, 0, 0, 1), 1, 0, 16, 1, ROOM, 0)

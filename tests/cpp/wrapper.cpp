@@ -446,11 +446,11 @@ void layers_have_names() {
 
 void lights_have_names() {
     const Context context = new_context();
-    const auto white = ok(luxfer::colour_temperature(context, 1, 1, 1));
+    const auto white = ok(luxfer::colour_temperature(context, {1, 1, 1}));
     CHECK(white.kelvin > 6480 && white.kelvin < 6530);
     const auto rgb = ok(luxfer::colour_of_temperature(context, white));
     CHECK(rgb[0] > 0.99 && rgb[0] < 1.01 && rgb[2] > 0.99 && rgb[2] < 1.01);
-    CHECK_ERROR(luxfer::colour_temperature(context, 0, 0, 0), LUXFER_DEGENERATE);
+    CHECK_ERROR(luxfer::colour_temperature(context, {0, 0, 0}), LUXFER_DEGENERATE);
     CHECK(ok(luxfer::glare(new_image(context), 1)).threshold >= 0);
     const std::array<luxfer_observer, 2> observers = {{{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}}}};
     const luxfer::Scene dark = ok(luxfer::Scene::create(context));

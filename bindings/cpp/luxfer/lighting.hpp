@@ -29,7 +29,7 @@ public:
 
     /// Adds a goal: the mean radiance that a mesh should have, in cd/m²; quantity is a LUXFER_QUANTITY_ value.
     Result<> add_mesh(std::uint32_t mesh, luxfer_quantity quantity, Rgb target, double weight = 1) const {
-        return call(luxfer_lamps_add_mesh, mesh, quantity, target.red, target.green, target.blue, weight);
+        return call(luxfer_lamps_add_mesh, mesh, quantity, target.data(), weight);
     }
 
     /// Adds a goal: the mean illuminance that a calculation grid should have, in lux.
@@ -38,9 +38,11 @@ public:
     }
 
     /// Makes a goal a limit, by one LUXFER_CONSTRAINT_ value for all channels, or one for each channel.
-    Result<> set_constraint(std::uint32_t goal, luxfer_constraint constraint) const { return set_constraint(goal, constraint, constraint, constraint); }
-    Result<> set_constraint(std::uint32_t goal, luxfer_constraint red, luxfer_constraint green, luxfer_constraint blue) const {
-        return call(luxfer_lamps_set_constraint, goal, red, green, blue);
+    Result<> set_constraint(std::uint32_t goal, luxfer_constraint constraint) const {
+        return set_constraint(goal, {constraint, constraint, constraint});
+    }
+    Result<> set_constraint(std::uint32_t goal, const std::array<luxfer_constraint, 3> &constraint) const {
+        return call(luxfer_lamps_set_constraint, goal, constraint.data());
     }
 
     /// Sets the dimming levels of the lamps' drivers, as factors of the emission; empty means continuous dimming.
@@ -103,12 +105,11 @@ public:
 
     /// Solves for the factor of a texture that gives the target a mean radiance, in cd/m².
     Result<luxfer_relight_report> solve(const Image &texture, Rgb target) const {
-        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), nullptr, target.red, target.green,
-                                            target.blue);
+        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), nullptr, target.data());
     }
     Result<luxfer_relight_report> solve(const Image &texture, Numbers<9> placement, Rgb target) const {
-        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), placement.data(), target.red,
-                                            target.green, target.blue);
+        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), placement.data(),
+                                            target.data());
     }
 
     /// Starts a job that finds the best placement of a texture in cd/m².
@@ -196,10 +197,10 @@ struct ColourTemperature {
     double kelvin, duv;
 };
 
-inline Result<ColourTemperature> colour_temperature(const Context &context, double red, double green, double blue) {
+inline Result<ColourTemperature> colour_temperature(const Context &context, const std::array<double, 3> &rgb) {
     ColourTemperature found = {};
     const luxfer_status status =
-        luxfer_colour_to_temperature(context.get(), red, green, blue, &found.kelvin, &found.duv);
+        luxfer_colour_to_temperature(context.get(), rgb.data(), &found.kelvin, &found.duv);
     return detail::finish(context.get(), status, found);
 }
 

@@ -134,13 +134,11 @@ public:
     }
 
     /// Sets the mean radiance that the surface should have, in cd/m².
-    Result<> set_target(Rgb target) const {
-        return call(luxfer_relight_set_target, target.red, target.green, target.blue);
-    }
+    Result<> set_target(Rgb target) const { return call(luxfer_relight_set_target, target.data()); }
 
     /// Makes the target a limit, by a LUXFER_CONSTRAINT_ value for each channel.
-    Result<> set_constraint(luxfer_constraint red, luxfer_constraint green, luxfer_constraint blue) const {
-        return call(luxfer_relight_set_constraint, red, green, blue);
+    Result<> set_constraint(const std::array<luxfer_constraint, 3> &constraint) const {
+        return call(luxfer_relight_set_constraint, constraint.data());
     }
 
     Result<Job> start(const luxfer_relight_params &params = RelightParams()) const {

@@ -151,17 +151,17 @@ public:
 
     /// Sets an environment of uniform radiance, in cd/m².
     Result<> set_environment(Rgb light) const {
-        return call(luxfer_scene_set_environment, nullptr, light.red, light.green, light.blue);
+        return call(luxfer_scene_set_environment, nullptr, light.data());
     }
 
     /// Sets an environment from an equirectangular image, multiplied by scale.
     Result<> set_environment(const Image &image, Rgb scale) const {
-        return call(luxfer_scene_set_environment, image.get(), scale.red, scale.green, scale.blue);
+        return call(luxfer_scene_set_environment, image.get(), scale.data());
     }
 
     /// Sets the emission of a material, in cd/m².
     Result<> set_emission(std::uint32_t material, Rgb emission) const {
-        return call(luxfer_scene_set_emission, material, emission.red, emission.green, emission.blue);
+        return call(luxfer_scene_set_emission, material, emission.data());
     }
 
     // Surfaces.
@@ -175,8 +175,7 @@ public:
     Result<PlacedEmission> place_emission(Text name, const Image &texture, Rgb scale) const {
         PlacedEmission placed;
         const luxfer_status status =
-            luxfer_scene_place_emission(get(), name.get(), texture.get(), scale.red, scale.green, scale.blue, &placed.mesh,
-                                        &placed.material);
+            luxfer_scene_place_emission(get(), name.get(), texture.get(), scale.data(), &placed.mesh, &placed.material);
         return detail::finish(context().get(), status, placed);
     }
 

@@ -76,8 +76,7 @@ def colour_temperature(context: Context, colour: Sequence[float]) -> tuple[float
     0.003
     """
     kelvin, duv = ctypes.c_double(), ctypes.c_double()
-    red, green, blue = (float(v) for v in colour)
-    call(context, "luxfer_colour_to_temperature", context, red, green, blue, kelvin, duv)
+    call(context, "luxfer_colour_to_temperature", context, _three(colour), kelvin, duv)
     return kelvin.value, duv.value
 
 
