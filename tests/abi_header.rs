@@ -583,9 +583,9 @@ layouts! {
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;
     luxfer_sheet_report: struct_size marks residual error to_photo;
     luxfer_guides_params: struct_size width height samples camera smooth seed;
-    luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish search_iterations
-        coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
-        seed coarse_guides coarse_iterations occurrence reserved;
+    luxfer_stylize_params: struct_size search patch guide_weight coarse_guides levels iterations coarse_iterations
+        finest_iterations polish search_iterations coverage passes settle seam vote final_vote preview keep_for_update
+        coherence match_appearance reserved seed;
     luxfer_stylize_report: struct_size is_complete levels halvings patch max_uses energy used entropy guide_error
         broken_source broken_target unblended_share;
     luxfer_stylize_round: struct_size passes energy;

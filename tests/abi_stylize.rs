@@ -92,28 +92,6 @@ fn ready(context: *mut luxfer_context, width: u32) -> *mut luxfer_stylize {
     stylize
 }
 
-#[test]
-fn usage_can_be_a_cost() {
-    let context = context(2);
-    let stylize = ready(context, 140);
-    let with = |mode, occurrence: f32| {
-        let params = luxfer_stylize_params { mode, occurrence, ..params() };
-        assert_eq!(run(stylize, &params), LUXFER_OK, "{}", message(context));
-        let picture = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
-        let (_, _, colours) = pixels(picture);
-        assert_eq!(unsafe { luxfer_release(picture.cast()) }, LUXFER_OK);
-        (colours, report(stylize).used)
-    };
-    let plain = with(LUXFER_STYLIZE_MODE_NEAREST, 1.0);
-    assert!(with(LUXFER_STYLIZE_MODE_OCCURRENCE, 0.0) == plain);
-    let used = with(LUXFER_STYLIZE_MODE_OCCURRENCE, 1.0).1;
-    assert!(used > plain.1, "{used} {}", plain.1);
-    unsafe {
-        assert_eq!(luxfer_release(stylize.cast()), LUXFER_OK);
-        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
-    }
-}
-
 /// Reads the rounds of the only level, and the passes of its first round, whose coverage rises. `energy` is the energy
 /// of the result.
 fn check_rounds(stylize: *mut luxfer_stylize, energy: f64) {

@@ -141,9 +141,6 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
  * Renderings". The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
  * ================================================================================================================== */
 
-/** How exemplar patches are assigned to target patches: a LUXFER_STYLIZE_MODE_ value. */
-typedef int32_t luxfer_stylize_mode;
-
 /** The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
 typedef int32_t luxfer_stylize_search;
 
@@ -157,8 +154,6 @@ typedef int32_t luxfer_stylize_vote;
 typedef struct luxfer_stylize_params {
     /** sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init. */
     uint32_t struct_size;
-    /** Assignment of patches: a LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET. */
-    luxfer_stylize_mode mode;
     /** Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH. */
     luxfer_stylize_search search;
     /**
@@ -171,18 +166,26 @@ typedef struct luxfer_stylize_params {
      */
     float guide_weight;
     /**
+     * Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
+     * factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
+     */
+    float coarse_guides;
+    /**
      * Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16]; default 6.
      * The coarsest level is at least 5 patches wide and high.
      */
     uint32_t levels;
     /** Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting. */
     uint32_t iterations;
+    /**
+     * Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
+     */
+    uint32_t coarse_iterations;
     /** Rounds (EM iterations) on the finest level, in [1, 100]; default 1. */
     uint32_t finest_iterations;
     /**
-     * Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
-     * LUXFER_STYLIZE_MODE_BUDGET each target patch takes its nearest match in these rounds, without the error budget.
-     * In other modes these are additional rounds of that mode.
+     * Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In these rounds
+     * each target patch takes its nearest match, without the error budget.
      */
     uint32_t polish;
     /** Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1. */
@@ -237,27 +240,10 @@ typedef struct luxfer_stylize_params {
      * light guides, in [0, 1]; 0, the default: not at all.
      */
     float match_appearance;
-    /** Seed of the search; default 1. */
-    uint64_t seed;
-    /**
-     * Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
-     * factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
-     */
-    float coarse_guides;
-    /**
-     * Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
-     */
-    uint32_t coarse_iterations;
-    /**
-     * Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
-     * with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. 2016 chose for their
-     * picture of this method (their Fig. 10n). The penalty is added to the distance of a match (their Eq. 1), which is
-     * the weighted sum of squared differences over the pixels of a patch, with channels in [0, 1]. A patch that is
-     * used as often as the average has the penalty lambda.
-     */
-    float occurrence;
     /** Must be 0. */
     uint32_t reserved;
+    /** Seed of the search; default 1. */
+    uint64_t seed;
 } luxfer_stylize_params;
 
 /** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
@@ -279,33 +265,6 @@ typedef int32_t luxfer_stylize_preset;
 
 /** The settings of the paper, for comparison. */
 #define LUXFER_STYLIZE_PAPER 3
-
-/** Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the default. */
-#define LUXFER_STYLIZE_MODE_BUDGET 0
-
-/** Every exemplar patch is used equally often (Jamriska et al. 2015). */
-#define LUXFER_STYLIZE_MODE_UNIFORM 1
-
-/** Each target patch takes its nearest exemplar patch (Wexler et al. 2007). */
-#define LUXFER_STYLIZE_MODE_NEAREST 2
-
-/**
- * One pass in scan order, in which each pixel takes its nearest match or continues the match of a neighbour (Hertzmann
- * et al. 2001); runs on one thread.
- */
-#define LUXFER_STYLIZE_MODE_GREEDY 3
-
-/**
- * Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan
- * et al. 2001).
- */
-#define LUXFER_STYLIZE_MODE_LIT_SPHERE 4
-
-/**
- * Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar et al.
- * 2015): see the field occurrence. Runs on one thread, and with LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
- */
-#define LUXFER_STYLIZE_MODE_OCCURRENCE 5
 
 /** PatchMatch (Barnes et al. 2009), the default. */
 #define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0
@@ -583,7 +542,7 @@ typedef struct luxfer_stylize_round {
     double energy;
 } luxfer_stylize_round;
 
-/** One matching pass under the error budget, in LUXFER_STYLIZE_MODE_BUDGET. */
+/** One matching pass under the error budget. */
 typedef struct luxfer_stylize_pass {
     /** sizeof(luxfer_stylize_pass), set by the function that fills the struct. */
     uint32_t struct_size;

@@ -118,7 +118,7 @@ pub struct luxfer_stylize_round {
 
 versioned!(luxfer_stylize_round, [16], { Self { struct_size: 16, passes: 0, energy: 0.0 } });
 
-/// One matching pass under the error budget, in LUXFER_STYLIZE_MODE_BUDGET.
+/// One matching pass under the error budget.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_stylize_pass {

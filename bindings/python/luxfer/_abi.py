@@ -287,12 +287,6 @@ LUXFER_STYLIZE_FULL = 0
 LUXFER_STYLIZE_FAST = 1
 LUXFER_STYLIZE_PREVIEW = 2
 LUXFER_STYLIZE_PAPER = 3
-LUXFER_STYLIZE_MODE_BUDGET = 0
-LUXFER_STYLIZE_MODE_UNIFORM = 1
-LUXFER_STYLIZE_MODE_NEAREST = 2
-LUXFER_STYLIZE_MODE_GREEDY = 3
-LUXFER_STYLIZE_MODE_LIT_SPHERE = 4
-LUXFER_STYLIZE_MODE_OCCURRENCE = 5
 LUXFER_STYLIZE_SEARCH_PATCHMATCH = 0
 LUXFER_STYLIZE_SEARCH_KD_TREE = 1
 LUXFER_STYLIZE_VOTE_PLAIN = 0
@@ -1433,12 +1427,13 @@ class luxfer_stylize_params(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("mode", c_int32),
         ("search", c_int32),
         ("patch", c_uint32),
         ("guide_weight", c_float),
+        ("coarse_guides", c_float),
         ("levels", c_uint32),
         ("iterations", c_uint32),
+        ("coarse_iterations", c_uint32),
         ("finest_iterations", c_uint32),
         ("polish", c_uint32),
         ("search_iterations", c_uint32),
@@ -1452,13 +1447,10 @@ class luxfer_stylize_params(Structure):
         ("keep_for_update", c_uint32),
         ("coherence", c_float),
         ("match_appearance", c_float),
-        ("seed", c_uint64),
-        ("coarse_guides", c_float),
-        ("coarse_iterations", c_uint32),
-        ("occurrence", c_float),
         ("reserved", c_uint32),
+        ("seed", c_uint64),
     ]
-    enumerations: dict[str, type] = {"mode": types.StylizeMode, "search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
+    enumerations: dict[str, type] = {"search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
     struct_type = LUXFER_STRUCT_STYLIZE_PARAMS
 
 
@@ -1495,7 +1487,7 @@ class luxfer_stylize_round(Structure):
 
 
 class luxfer_stylize_pass(Structure):
-    """One matching pass under the error budget, in StylizeMode.BUDGET."""
+    """One matching pass under the error budget."""
 
     _fields_ = [
         ("struct_size", c_uint32),

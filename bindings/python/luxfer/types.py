@@ -801,27 +801,6 @@ class GuidesImage(IntEnum):
     surface, which reflects it to the camera (LS+DE)."""
 
 
-class StylizeMode(IntEnum):
-    """How exemplar patches are assigned to target patches."""
-
-    BUDGET = 0
-    """Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the
-    default."""
-    UNIFORM = 1
-    """Every exemplar patch is used equally often (Jamriska et al. 2015)."""
-    NEAREST = 2
-    """Each target patch takes its nearest exemplar patch (Wexler et al. 2007)."""
-    GREEDY = 3
-    """One pass in scan order, in which each pixel takes its nearest match or continues the match of a neighbour
-    (Hertzmann et al. 2001); runs on one thread."""
-    LIT_SPHERE = 4
-    """Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit
-    Sphere (Sloan et al. 2001)."""
-    OCCURRENCE = 5
-    """Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar
-    et al. 2015): see the field occurrence. Runs on one thread, and with StylizeSearch.PATCHMATCH only."""
-
-
 class StylizeSearch(IntEnum):
     """The search for nearest patches."""
 
@@ -2473,8 +2452,6 @@ class GuidesParams(TypedDict, total=False):
 class StylizeParams(TypedDict, total=False):
     """Settings of a stylisation. The defaults stated here belong to StylizePreset.FULL."""
 
-    mode: StylizeMode | str | int
-    """Assignment of patches: StylizeMode; default StylizeMode.BUDGET."""
     search: StylizeSearch | str | int
     """Search for nearest patches: StylizeSearch; default StylizeSearch.PATCHMATCH."""
     patch: int
@@ -2483,18 +2460,23 @@ class StylizeParams(TypedDict, total=False):
     guide_weight: float
     """Weight of all guides together, relative to the weight of all colour channels of the artwork together, in
     [0, 1e6]; default 2."""
+    coarse_guides: float
+    """Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a
+    larger factor the picture follows the guides more closely, with smaller connected pieces of the artwork."""
     levels: int
     """Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16];
     default 6. The coarsest level is at least 5 patches wide and high."""
     iterations: int
     """Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then
     voting."""
+    coarse_iterations: int
+    """Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper
+    has 6."""
     finest_iterations: int
     """Rounds (EM iterations) on the finest level, in [1, 100]; default 1."""
     polish: int
-    """Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
-    StylizeMode.BUDGET each target patch takes its nearest match in these rounds, without the error budget. In
-    other modes these are additional rounds of that mode."""
+    """Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In these
+    rounds each target patch takes its nearest match, without the error budget."""
     search_iterations: int
     """Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1."""
     coverage: float
@@ -2532,18 +2514,6 @@ class StylizeParams(TypedDict, total=False):
     target's light guides, in [0, 1]; 0, the default: not at all."""
     seed: int
     """Seed of the search; default 1."""
-    coarse_guides: float
-    """Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a
-    larger factor the picture follows the guides more closely, with smaller connected pieces of the artwork."""
-    coarse_iterations: int
-    """Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper
-    has 6."""
-    occurrence: float
-    """Weight lambda of the penalty for patches that are used often, in StylizeMode.OCCURRENCE, in [0, 10]; with
-    0, the mode equals StylizeMode.NEAREST. Default 0.1, which Fiser et al. 2016 chose for their picture of this
-    method (their Fig. 10n). The penalty is added to the distance of a match (their Eq. 1), which is the
-    weighted sum of squared differences over the pixels of a patch, with channels in [0, 1]. A patch that is
-    used as often as the average has the penalty lambda."""
 
 
 @dataclass(frozen=True)
@@ -2593,7 +2563,7 @@ class StylizeRound:
 
 @dataclass(frozen=True)
 class StylizePass:
-    """One matching pass under the error budget, in StylizeMode.BUDGET."""
+    """One matching pass under the error budget."""
 
     knee: float
     """Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which
