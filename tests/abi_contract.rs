@@ -3,7 +3,7 @@
 
 mod host;
 
-use host::{context, image, made, message, scene, view};
+use host::{context, image, made, message, scene, view, wait};
 use luxfer::ffi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
@@ -492,7 +492,7 @@ fn a_stage_copies_strokes_of_its_size() {
     let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
     let start = || unsafe {
         let job = made(|out| luxfer_segment_start(segment, null(), out));
-        let status = luxfer_job_wait(job, -1, None, null_mut());
+        let status = wait(job, -1, None, null_mut());
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         status
     };

@@ -3,7 +3,7 @@
 
 mod host;
 
-use host::{context, made, message, scene};
+use host::{context, made, message, scene, wait};
 use luxfer::ffi::*;
 use std::ffi::CStr;
 use std::ptr::null_mut;
@@ -52,7 +52,7 @@ fn rendered(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut lux
         assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
         params = luxfer_render_params { width: 16, height: 12, samples: 4, ..params };
         let job = made(|out| luxfer_render_start(render, &params, out));
-        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));
+        assert_eq!(wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));
         (render, job)
     }
 }

@@ -2,7 +2,7 @@
 
 mod host;
 
-use host::{context, made, message, scene};
+use host::{context, made, message, scene, wait};
 use luxfer::ffi::*;
 use std::ffi::{CStr, CString, c_char};
 use std::ptr::{null, null_mut};
@@ -21,7 +21,7 @@ fn pixels(image: *mut luxfer_image) -> (usize, Vec<f32>) {
 
 fn finish(job: *mut luxfer_job) -> luxfer_status {
     unsafe {
-        let status = luxfer_job_wait(job, -1, None, null_mut());
+        let status = wait(job, -1, None, null_mut());
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         status
     }

@@ -5,7 +5,7 @@
 
 mod host;
 
-use host::{context, image, made, message, view};
+use host::{context, image, made, message, view, wait};
 use luxfer::ffi::*;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
@@ -70,7 +70,7 @@ fn get(stylize: *mut luxfer_stylize, which: luxfer_stylize_image) -> *mut luxfer
 fn run(stylize: *mut luxfer_stylize, params: &luxfer_stylize_params) -> luxfer_status {
     let job = made(|out| unsafe { luxfer_stylize_start(stylize, params, out) });
     unsafe {
-        let status = luxfer_job_wait(job, -1, None, null_mut());
+        let status = wait(job, -1, None, null_mut());
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         status
     }
@@ -185,7 +185,7 @@ fn a_cancelled_run_keeps_the_picture_of_its_last_level() {
     unsafe {
         let job = made(|out| luxfer_stylize_start(stylize, &params, out));
         assert_eq!(luxfer_stylize_clear_guides(stylize), LUXFER_INVALID_OPERATION, "a job runs");
-        assert_eq!(luxfer_job_wait(job, -1, Some(cancel_at_first_picture), stylize.cast()), LUXFER_CANCELLED);
+        assert_eq!(wait(job, -1, Some(cancel_at_first_picture), stylize.cast()), LUXFER_CANCELLED);
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         let so_far = report(stylize);
         assert!(so_far.is_complete == 0 && so_far.levels >= 1 && so_far.halvings >= 1 && so_far.energy > 0.0);
@@ -211,7 +211,7 @@ fn new_paint_is_followed_where_it_is() {
     let update = |artwork, changed| {
         let job = made(|out| unsafe { luxfer_stylize_update(stylize, artwork, changed, out) });
         unsafe {
-            let status = luxfer_job_wait(job, -1, None, null_mut());
+            let status = wait(job, -1, None, null_mut());
             assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
             status
         }

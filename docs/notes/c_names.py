@@ -61,7 +61,7 @@ GONE = [
     (["scene_set_environment_image"], "`luxfer_scene_set_environment` takes an image"),
     (["scene_read_mesh", "scene_read_mesh_uvs", "scene_read_mesh_colours"], "`luxfer_scene_read_vertices`, `luxfer_scene_read_triangles`"),
     (["render_set_camera_index"], "`luxfer_scene_get_camera`, then `luxfer_render_set_camera`"),
-    (["job_poll", "job_status"], "`luxfer_job_get_progress`"),
+    (["job_poll", "job_status"], "`luxfer_job_get_progress`, and the outcome that `luxfer_job_wait` writes"),
     (["power_density"], "a formula of one line: flux / efficacy / area"),
 ]
 

@@ -672,30 +672,29 @@ typedef struct luxfer_job luxfer_job;
 typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
 
 /**
- * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
- * During the wait, the call passes the progress and the pointer user to the function progress, which may be NULL. Any
- * thread; several threads may wait for one job.
+ * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit, and 0
+ * does not wait. During the wait, the call passes the progress and the pointer user to the function progress, which may
+ * be NULL. Any thread; several threads may wait for one job.
  *
- * Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the message
- * of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other
- * job also cancels this job.
- * LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY if the wait timed out (the job continues);
- * LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
+ * *outcome receives the status of the work: LUXFER_OK if the job has succeeded, LUXFER_CANCELLED if a cancel request
+ * came in time, LUXFER_NOT_READY if the job still runs, and otherwise the error with which the job has ended. For an
+ * error, luxfer_context_get_last_error then gives the message of the job. The call itself returns LUXFER_OK whatever
+ * the outcome. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other job
+ * also cancels this job.
+ * LUXFER_INVALID_ARGUMENT if outcome is NULL; LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
                               luxfer_progress_fn progress,
-                              void *user);
+                              void *user,
+                              luxfer_status *outcome);
 
 /**
- * Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1], which is 1
- * only after success. *outcome receives the status with which the job has ended, as luxfer_job_wait returns it, or
- * LUXFER_NOT_READY while the job runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any
- * thread.
+ * Gets the progress of a job without waiting, in [0, 1]; it is 1 only after success. The call succeeds whether the job
+ * runs, has succeeded or has failed; luxfer_job_wait says which. Any thread.
  */
 luxfer_status luxfer_job_get_progress(luxfer_job *job,
-                                      double *fraction,
-                                      luxfer_status *outcome);
+                                      double *fraction);
 
 /**
  * Asks a job to end early and returns at once; the job ends within about 100 ms. A request cannot be withdrawn. A
@@ -727,8 +726,9 @@ typedef int32_t (*luxfer_work_fn)(void *user);
  * this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture.
  *
  * If the function returns an error, the job ends with this error. The message of the job is that of the last call that
- * failed on the job's thread. The error LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because
- * luxfer_job_wait returns LUXFER_NOT_READY for a job that still runs.
+ * failed on the job's thread, or of the last job that failed while the function waited for it. The error
+ * LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that still
+ * runs.
  * LUXFER_INVALID_ARGUMENT if work is NULL.
  */
 luxfer_status luxfer_job_start(luxfer_context *context,

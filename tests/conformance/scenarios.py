@@ -141,12 +141,12 @@ def jobs() -> Scenario:
     s.call("render_set_scene", render, s.room())
     for work in ("work", "fail"):
         job = s.make("job_start", s.context, ["callback", work], None)
-        s.call("job_wait", job, 5000, ["callback", "go"], None)
+        s.call("job_wait", job, 5000, ["callback", "go"], None, ROOM)
         s.finish(job)
     for progress in ("go", "cancel", "later", "again"):
         job = s.make("render_start", render, struct("render_params", width=64, height=48, samples=4 if progress == "go" else 100_000))
-        s.call("job_get_progress", job, ROOM, ROOM)
-        s.call("job_wait", job, 5000 if progress == "go" else 30, ["callback", progress], None)
+        s.call("job_get_progress", job, ROOM)
+        s.call("job_wait", job, 5000 if progress == "go" else 30, ["callback", progress], None, ROOM)
         s.references(job)
         s.call("job_cancel", job)
         s.finish(job)

@@ -298,7 +298,8 @@ public:
 
     /// Waits until the job has ended; if it fails, this call fails with its error.
     Result<> wait(const Progress &progress = {}) const {
-        return detail::finish(context().get(), wait_c(get(), -1, progress));
+        const Waited waited = wait_c(get(), -1, progress);
+        return detail::finish(context().get(), waited.error());
     }
 
     /// Waits at most for the given time. Returns true if the job has succeeded, false if it still runs; fails with the
@@ -306,16 +307,20 @@ public:
     Result<bool> wait_for(std::chrono::milliseconds time, const Progress &progress = {}) const {
         constexpr std::int64_t longest = std::numeric_limits<std::int32_t>::max();
         const auto limit = std::int32_t(std::min(std::max<std::int64_t>(time.count(), 0), longest));
-        const luxfer_status status = wait_c(get(), limit, progress);
-        if (status == LUXFER_NOT_READY)
+        const Waited waited = wait_c(get(), limit, progress);
+        if (waited.status == LUXFER_OK && waited.outcome == LUXFER_NOT_READY)
             return false;
-        return detail::finish(context().get(), status, true);
+        return detail::finish(context().get(), waited.error(), true);
     }
 
     /// Gets the progress and the outcome without waiting; does not fail with the job's error.
     Result<JobState> poll() const {
         JobState state;
-        const luxfer_status status = luxfer_job_get_progress(get(), &state.fraction, &state.outcome);
+        luxfer_status status = luxfer_job_get_progress(get(), &state.fraction);
+        if (status == LUXFER_OK)
+            status = luxfer_job_wait(get(), 0, nullptr, nullptr, &state.outcome);
+        if (state.outcome == LUXFER_OK)
+            state.fraction = 1; // it may have succeeded since the first call
         return detail::finish(context().get(), status, state);
     }
 
@@ -323,6 +328,13 @@ public:
     Result<> cancel() const { return call(luxfer_job_cancel); }
 
 private:
+    // The status of luxfer_job_wait, and the outcome of the job that it gives.
+    struct Waited {
+        luxfer_status status = LUXFER_OK, outcome = LUXFER_NOT_READY;
+
+        luxfer_status error() const noexcept { return status != LUXFER_OK ? status : outcome; }
+    };
+
     struct Listener {
         const Progress &progress;
         detail::Caught caught;
@@ -339,13 +351,12 @@ private:
     }
 
     // Calls luxfer_job_wait with a C++ progress function.
-    static luxfer_status wait_c(luxfer_job *job, std::int32_t timeout_ms, const Progress &progress) {
-        if (!progress)
-            return luxfer_job_wait(job, timeout_ms, nullptr, nullptr);
+    static Waited wait_c(luxfer_job *job, std::int32_t timeout_ms, const Progress &progress) {
+        Waited waited;
         Listener listener = {progress, {}};
-        const luxfer_status status = luxfer_job_wait(job, timeout_ms, tell, &listener);
+        waited.status = luxfer_job_wait(job, timeout_ms, progress ? tell : nullptr, &listener, &waited.outcome);
         listener.caught.rethrow();
-        return status;
+        return waited;
     }
 };
 
