@@ -346,7 +346,7 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(add(&luxfer_mesh_params { position_stride: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_scene_set_environment(scene, null_mut(), [-1.0, 0.0, 0.0].as_ptr()), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_scene_set_environment(scene, null_mut(), null()), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_emission(scene, 7, [1.0; 3].as_ptr()), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_scene_set_material(scene, 7, null()), LUXFER_NOT_FOUND);
 
         let mut counts = std::mem::zeroed::<luxfer_scene_counts>();
         assert_eq!(luxfer_scene_get_counts(scene, &mut counts, 0), LUXFER_INVALID_ARGUMENT);
@@ -503,12 +503,13 @@ fn a_stage_copies_strokes_of_its_size() {
         assert_eq!(luxfer_segment_set_strokes(segment, 2, strokes), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, small.cast()), LUXFER_INVALID_ARGUMENT);
 
-        // The stage has a copy of the strokes, so later changes by the caller do not reach it.
+        // The stage has a copy of the strokes, so it keeps them after the caller has released them.
         let points = [1.0f32, 1.0, 6.0, 1.0];
         assert_eq!(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, points.as_ptr(), 2, 1.0, 1), LUXFER_OK);
         assert_eq!(luxfer_strokes_add_text(strokes, c"not-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
         assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
-        assert_eq!(luxfer_strokes_clear(strokes), LUXFER_OK);
+        assert_eq!(luxfer_release(strokes.cast()), LUXFER_OK);
+        let strokes = made(|out| luxfer_strokes_create(context, 8, 8, out));
         assert_eq!(start(), LUXFER_OK);
         assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
         assert_eq!(start(), LUXFER_DEGENERATE);

@@ -568,7 +568,7 @@ layouts! {
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size in_gamut colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;
-    luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling;
+    luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling name;
     luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size;
     luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights
         emission relight render pattern;
@@ -588,7 +588,5 @@ layouts! {
         coherence match_appearance reserved seed;
     luxfer_stylize_report: struct_size is_complete levels halvings patch max_uses energy used entropy guide_error
         broken_source broken_target unblended_share;
-    luxfer_stylize_round: struct_size passes energy;
-    luxfer_stylize_pass: struct_size reserved knee coverage new_matches;
     luxfer_fixture: struct_size position normal axis radiance kind size area flux cct duv;
 }

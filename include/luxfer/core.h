@@ -643,9 +643,6 @@ luxfer_status luxfer_strokes_add_image(luxfer_strokes *strokes,
 luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
                                       const char *description);
 
-/** Removes all strokes of a set. Stages keep their copies. Any thread. */
-luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
-
 /* ==================================================================================================================
  * Job
  *

@@ -972,6 +972,8 @@ typedef struct luxfer_preset {
     double walls;
     /** Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement. */
     double ceiling;
+    /** The name, such as "office: filing, copying", in UTF-8; valid as long as the library is loaded. */
+    const char *name;
 } luxfer_preset;
 
 /**
@@ -1020,18 +1022,6 @@ luxfer_status luxfer_preset_get(luxfer_context *context,
                                 uint32_t index,
                                 luxfer_preset *preset,
                                 size_t size);
-
-/**
- * Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
- * capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole name needs. Any
- * thread.
- * LUXFER_NOT_FOUND if index is beyond the last preset.
- */
-luxfer_status luxfer_preset_get_name(luxfer_context *context,
-                                     uint32_t index,
-                                     char *buffer,
-                                     size_t capacity,
-                                     size_t *needed);
 
 /* ==================================================================================================================
  * Pendants

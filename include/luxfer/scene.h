@@ -120,13 +120,6 @@ luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
                                            const float rgb[3]);
 
 /**
- * Sets the emission of a material: rgb in cd/m², each channel in [0, 1e15]. The material's emission texture,
- * if any, is multiplied by them. Any thread.
- * LUXFER_NOT_FOUND if there is no such material.
- */
-luxfer_status luxfer_scene_set_emission(luxfer_scene *scene, uint32_t material, const float rgb[3]);
-
-/**
  * Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
  * plane from which most of the room is visible. name is the name of the object or material, in UTF-8. An equal name is
  * sought first, then a name that differs only in upper and lower case, then the only name that contains name in any

@@ -284,16 +284,6 @@ luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
                                        luxfer_image **image);
 
 /**
- * Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
- * pixels outside the photo become 0. The call is synchronous and takes a few milliseconds per megapixel. The caller
- * releases *warped. Any thread.
- * LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
- */
-luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
-                                  luxfer_image *source,
-                                  luxfer_image **warped);
-
-/**
  * Gets the camera and the unwarping, with their errors. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */

@@ -482,8 +482,7 @@ luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
 /* ==================================================================================================================
  * Results of a stylisation
  *
- * The picture, the place in the artwork from which each pixel was painted, the error of the guides, and statistics of
- * the run level by level.
+ * The picture, the place in the artwork from which each pixel was painted, and the error of the guides.
  * ================================================================================================================== */
 
 /** An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value. */
@@ -498,7 +497,7 @@ typedef struct luxfer_stylize_report {
      * are 0.
      */
     uint32_t is_complete;
-    /** Number of finished levels; see luxfer_stylize_get_level. */
+    /** Number of finished resolution levels. */
     uint32_t levels;
     /** Number of times that the target's sides were halved to get the size of the picture. */
     uint32_t halvings;
@@ -528,36 +527,6 @@ typedef struct luxfer_stylize_report {
      */
     double unblended_share;
 } luxfer_stylize_report;
-
-/** One round (EM iteration) on a level: matching, then voting. */
-typedef struct luxfer_stylize_round {
-    /** sizeof(luxfer_stylize_round), set by the function that fills the struct. */
-    uint32_t struct_size;
-    /** Number of matching passes under the error budget; see luxfer_stylize_get_pass. */
-    uint32_t passes;
-    /**
-     * Energy after this round, as luxfer_stylize_report.energy. On all levels but the finest, all guides together have
-     * the weight guide_weight * coarse_guides.
-     */
-    double energy;
-} luxfer_stylize_round;
-
-/** One matching pass under the error budget. */
-typedef struct luxfer_stylize_pass {
-    /** sizeof(luxfer_stylize_pass), set by the function that fills the struct. */
-    uint32_t struct_size;
-    /** Reserved; always 0. */
-    uint32_t reserved;
-    /**
-     * Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which the
-     * sorted errors begin to rise steeply. The sum of the errors before the knee is the error budget.
-     */
-    double knee;
-    /** Share of the target with a match after this pass, in [0, 1]. */
-    double coverage;
-    /** Number of target patches that received a match in this pass. */
-    uint64_t new_matches;
-} luxfer_stylize_pass;
 
 /**
  * The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it
@@ -595,40 +564,6 @@ luxfer_status luxfer_stylize_get_image(luxfer_stylize *stylize,
 luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize,
                                         luxfer_stylize_report *report,
                                         size_t size);
-
-/**
- * Gets the size of a level in pixels and the number of its rounds; level 0 is the coarsest. width, height and rounds
- * may be NULL. Any thread.
- * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level.
- */
-luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
-                                       uint32_t level,
-                                       uint32_t *width,
-                                       uint32_t *height,
-                                       uint32_t *rounds);
-
-/**
- * Describes a round (EM iteration) of a level; level and index are numbers from 0. size is sizeof *round. Any thread.
- * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
- */
-luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
-                                       uint32_t level,
-                                       uint32_t index,
-                                       luxfer_stylize_round *round,
-                                       size_t size);
-
-/**
- * Describes a matching pass of a round (EM iteration); level, round and index are numbers from 0. size is sizeof
- * *pass. Any thread.
- * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
- * pass.
- */
-luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
-                                      uint32_t level,
-                                      uint32_t round,
-                                      uint32_t index,
-                                      luxfer_stylize_pass *pass,
-                                      size_t size);
 
 /* ==================================================================================================================
  * Print sheets

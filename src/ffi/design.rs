@@ -8,7 +8,7 @@ use super::context::luxfer_context;
 use super::geometry::{list, numbers};
 use super::guard::enter;
 use super::params::{Report, Versioned, versioned};
-use super::pointer::{Out, bytes_mut, copy_text};
+use super::pointer::{Out, bytes_mut};
 use super::scene::missing;
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
@@ -80,11 +80,14 @@ pub struct luxfer_preset {
     pub walls: f64,
     /// Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement.
     pub ceiling: f64,
+    /// The name, such as "office: filing, copying", in UTF-8; valid as long as the library is loaded.
+    pub name: *const c_char,
 }
 
-versioned!(luxfer_preset, [56], {
+versioned!(luxfer_preset, [64], {
     let (illuminance, glare, uniformity, rendering) = (0.0, 0.0, 0.0, 0.0);
-    Self { struct_size: 56, edition: 0, illuminance, glare, uniformity, rendering, walls: 0.0, ceiling: 0.0 }
+    let name = std::ptr::null();
+    Self { struct_size: 64, edition: 0, illuminance, glare, uniformity, rendering, walls: 0.0, ceiling: 0.0, name }
 });
 
 /// Mixes rgb, a linear colour with channels that are finite and >= 0, from the LEDs of a luminaire. The array primaries
@@ -199,25 +202,11 @@ pub unsafe extern "C" fn luxfer_preset_get(
             rendering: p.rendering,
             walls: p.walls,
             ceiling: p.ceiling,
+            name: p.name.as_ptr(),
             ..luxfer_preset::defaults()
         });
         Ok(())
     })
-}
-
-/// Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
-/// capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole name needs. Any
-/// thread.
-/// LUXFER_NOT_FOUND if index is beyond the last preset.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_preset_get_name(
-    context: *mut luxfer_context,
-    index: u32,
-    buffer: *mut c_char,
-    capacity: usize,
-    needed: *mut usize,
-) -> luxfer_status {
-    enter(context, |_| copy_text(find(index)?.name, buffer, capacity, needed))
 }
 
 fn find(index: u32) -> Result<&'static Preset> {

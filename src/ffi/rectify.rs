@@ -419,31 +419,6 @@ pub unsafe extern "C" fn luxfer_rectify_get_image(
     })
 }
 
-/// Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
-/// pixels outside the photo become 0. The call is synchronous and takes a few milliseconds per megapixel. The caller
-/// releases *warped. Any thread.
-/// LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_rectify_warp(
-    rectify: *mut luxfer_rectify,
-    source: *mut luxfer_image,
-    warped: *mut *mut luxfer_image,
-) -> luxfer_status {
-    enter(rectify, |stage| {
-        let out = Out::new(warped, "warped")?;
-        let source = handle::borrow_in(stage.context(), source, "source")?;
-        let output = stage.output()?;
-        let unwarped = unwarped(&output)?;
-        output.found_in.image().check_same_size("the photo", source.image(), "source")?;
-        let (width, height) = (unwarped.image.width, unwarped.image.height);
-        let monitor = stage.context().monitor();
-        let quick = &stage.context().quick;
-        let image = quick.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
-        out.set(handle::give(Pixels::part(stage.context(), Arc::new(image), |image| image)));
-        Ok(())
-    })
-}
-
 /// Gets the camera and the unwarping, with their errors. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]

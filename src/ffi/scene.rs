@@ -352,27 +352,6 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
     })
 }
 
-/// Sets the emission of a material: rgb in cd/m², each channel in [0, 1e15]. The material's emission texture,
-/// if any, is multiplied by them. Any thread.
-/// LUXFER_NOT_FOUND if there is no such material.
-/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_set_emission(
-    scene: *mut luxfer_scene,
-    material: u32,
-    rgb: *const f32,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let emission = read_colour(rgb)?;
-        object.change(0, |scene| {
-            let count = scene.materials.len();
-            let found = scene.materials.get_mut(material as usize);
-            found.ok_or_else(|| missing("material", material, count))?.emission = emission;
-            Ok(())
-        })
-    })
-}
-
 /// Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
 /// plane from which most of the room is visible. name is the name of the object or material, in UTF-8. An equal name is
 /// sought first, then a name that differs only in upper and lower case, then the only name that contains name in any

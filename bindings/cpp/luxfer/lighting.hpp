@@ -271,8 +271,4 @@ inline Result<luxfer_preset> preset(const Context &context, std::uint32_t index)
     return detail::get_value<luxfer_preset>(context.get(), luxfer_preset_get, context.get(), index);
 }
 
-inline Result<std::string> preset_name(const Context &context, std::uint32_t index) {
-    return detail::get_text(context.get(), luxfer_preset_get_name, context.get(), index);
-}
-
 } // namespace luxfer

@@ -34,9 +34,6 @@ public:
     /// Gets an image of the results; `kind` is a LUXFER_RECTIFY_ value.
     Result<Image> image(luxfer_rectify_image kind) const { return make<Image>(luxfer_rectify_get_image, kind); }
 
-    /// Unwarps another image of the photo's size by the homography of the plane.
-    Result<Image> warp(const Image &source) const { return make<Image>(luxfer_rectify_warp, source.get()); }
-
     Result<luxfer_rectify_report> report() const { return value<luxfer_rectify_report>(luxfer_rectify_get_report); }
 
     /// Reasons to doubt the camera, and the plane if it has been unwarped.
@@ -78,9 +75,6 @@ public:
 
     /// Adds the strokes that a text describes.
     Result<> add(Text description) const { return call(luxfer_strokes_add_text, description.get()); }
-
-    /// Removes all strokes.
-    Result<> clear() const { return call(luxfer_strokes_clear); }
 };
 
 /// The features of each pixel of a photo, for segmentation. See luxfer_features.

@@ -79,10 +79,7 @@ public:
 
     Result<std::uint32_t> layer_count() const { return value<std::uint32_t>(luxfer_render_get_layer_count); }
     Result<std::string> layer_name(std::uint32_t index) const { return text(luxfer_render_get_layer_name, index); }
-    Result<std::uint32_t> find_layer(Text name) const {
-        return value<std::uint32_t>(luxfer_render_find_layer, name.get());
-    }
-    Result<Image> layer(std::uint32_t index) const { return make<Image>(luxfer_render_get_layer, index); }
+    Result<Image> layer(Text name) const { return make<Image>(luxfer_render_get_layer, name.get()); }
 
     /// Writes the picture and all layers into one file.
     Result<> write_exr(Text path) const { return call(luxfer_render_write_exr, path.get()); }

@@ -159,11 +159,6 @@ public:
         return call(luxfer_scene_set_environment, image.get(), scale.data());
     }
 
-    /// Sets the emission of a material, in cd/m².
-    Result<> set_emission(std::uint32_t material, Rgb emission) const {
-        return call(luxfer_scene_set_emission, material, emission.data());
-    }
-
     // Surfaces.
 
     /// Finds the planar surface of an object or material that faces the room.

@@ -1350,6 +1350,7 @@ class luxfer_preset(Structure):
         ("rendering", c_double),
         ("walls", c_double),
         ("ceiling", c_double),
+        ("name", c_char_p),
     ]
     result = types.Preset
 
@@ -1475,30 +1476,6 @@ class luxfer_stylize_report(Structure):
     result = types.StylizeReport
 
 
-class luxfer_stylize_round(Structure):
-    """One round (EM iteration) on a level: matching, then voting."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("passes", c_uint32),
-        ("energy", c_double),
-    ]
-    result = types.StylizeRound
-
-
-class luxfer_stylize_pass(Structure):
-    """One matching pass under the error budget."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("reserved", c_uint32),
-        ("knee", c_double),
-        ("coverage", c_double),
-        ("new_matches", c_uint64),
-    ]
-    result = types.StylizePass
-
-
 class luxfer_sheet_params(Structure):
     """Settings of a print sheet."""
 
@@ -1604,7 +1581,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_strokes_add": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
     "luxfer_strokes_add_image": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("drawing", POINTER(luxfer_image))]),
     "luxfer_strokes_add_text": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("description", c_char_p)]),
-    "luxfer_strokes_clear": (c_int32, [("strokes", POINTER(luxfer_strokes))]),
     "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p), ("outcome", POINTER(c_int32))]),
     "luxfer_job_get_progress": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double))]),
     "luxfer_job_cancel": (c_int32, [("job", POINTER(luxfer_job))]),
@@ -1614,7 +1590,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_export_memory": (c_int32, [("scene", POINTER(luxfer_scene)), ("write", luxfer_write_fn), ("user", c_void_p)]),
     "luxfer_scene_get_counts": (c_int32, [("scene", POINTER(luxfer_scene)), ("counts", POINTER(luxfer_scene_counts)), ("size", c_size_t)]),
     "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("rgb", POINTER(c_float))]),
-    "luxfer_scene_set_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("rgb", POINTER(c_float))]),
     "luxfer_scene_find_surface": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("found", POINTER(luxfer_surface)), ("size", c_size_t)]),
     "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("rgb", POINTER(c_float)), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
@@ -1662,8 +1637,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_render_set_aovs": (c_int32, [("render", POINTER(luxfer_render)), ("flags", c_uint32)]),
     "luxfer_render_get_layer_count": (c_int32, [("render", POINTER(luxfer_render)), ("count", POINTER(c_uint32))]),
     "luxfer_render_get_layer_name": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_render_find_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("index", POINTER(c_uint32))]),
-    "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_render_write_exr": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
     "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
     "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
@@ -1672,7 +1646,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_rectify_set_mask": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("mask", POINTER(luxfer_image))]),
     "luxfer_rectify_start": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("params", POINTER(luxfer_rectify_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_rectify_warp": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("source", POINTER(luxfer_image)), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
     "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
     "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
@@ -1770,7 +1743,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),
     "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset)), ("size", c_size_t)]),
-    "luxfer_preset_get_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_pendants_find": (c_int32, [("context", POINTER(luxfer_context)), ("photo", POINTER(luxfer_image)), ("mask", POINTER(luxfer_image)), ("view", POINTER(luxfer_rectify)), ("suspensions", POINTER(c_double)), ("suspension_count", c_size_t), ("params", POINTER(luxfer_pendants_params)), ("pendants", POINTER(luxfer_pendant)), ("size", c_size_t), ("capacity", c_size_t), ("count", POINTER(c_size_t))]),
     "luxfer_scene_add_pendants": (c_int32, [("scene", POINTER(luxfer_scene)), ("pendant", POINTER(luxfer_pendant)), ("places", POINTER(c_double)), ("count", c_size_t), ("diameter", c_float), ("luminance", c_float), ("first_mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
@@ -1792,9 +1764,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_stylize_set_painted": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("painted", POINTER(luxfer_image))]),
     "luxfer_stylize_get_image": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_stylize_get_report": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("report", POINTER(luxfer_stylize_report)), ("size", c_size_t)]),
-    "luxfer_stylize_get_level": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("rounds", POINTER(c_uint32))]),
-    "luxfer_stylize_get_round": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("index", c_uint32), ("round", POINTER(luxfer_stylize_round)), ("size", c_size_t)]),
-    "luxfer_stylize_get_pass": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("round", c_uint32), ("index", c_uint32), ("pass", POINTER(luxfer_stylize_pass)), ("size", c_size_t)]),
     "luxfer_sheet_print": (c_int32, [("picture", POINTER(luxfer_image)), ("params", POINTER(luxfer_sheet_params)), ("sheet", POINTER(POINTER(luxfer_image)))]),
     "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report)), ("size", c_size_t)]),
     "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),

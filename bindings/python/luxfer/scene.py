@@ -232,10 +232,6 @@ class Scene(Handle):
         sky = None if image is None else image_of(self._context, image)
         self._call("set_environment", sky, _params.rgb(colour))
 
-    def set_emission(self, material: int, colour: Sequence[float]) -> None:
-        """Sets the emission of a material, in cd/m²; it multiplies the emission texture."""
-        self._call("set_emission", material, _params.rgb(colour))
-
     def find_surface(self, name: str) -> Surface:
         """Finds the planar surface of an object or material that faces the room."""
         return cast(Surface, self._read("find_surface", _abi.luxfer_surface, _params.text(name, "name")))

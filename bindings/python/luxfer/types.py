@@ -2341,6 +2341,8 @@ class Preset:
     """Minimum mean illuminance of the walls, in lux; 0 if there is no requirement."""
     ceiling: float
     """Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement."""
+    name: str
+    """The name, such as "office: filing, copying", in UTF-8; valid as long as the library is loaded."""
 
 
 class PendantsParams(TypedDict, total=False):
@@ -2524,7 +2526,7 @@ class StylizeReport:
     """1 if the run is complete; 0 if only some levels are finished: then all fields but levels, halvings and
     energy are 0."""
     levels: int
-    """Number of finished levels; see luxfer_stylize_get_level."""
+    """Number of finished resolution levels."""
     halvings: int
     """Number of times that the target's sides were halved to get the size of the picture."""
     patch: int
@@ -2548,30 +2550,6 @@ class StylizeReport:
     unblended_share: float
     """Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
     StylizeVote.ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it."""
-
-
-@dataclass(frozen=True)
-class StylizeRound:
-    """One round (EM iteration) on a level: matching, then voting."""
-
-    passes: int
-    """Number of matching passes under the error budget; see luxfer_stylize_get_pass."""
-    energy: float
-    """Energy after this round, as StylizeReport.energy. On all levels but the finest, all guides together have
-    the weight guide_weight * coarse_guides."""
-
-
-@dataclass(frozen=True)
-class StylizePass:
-    """One matching pass under the error budget."""
-
-    knee: float
-    """Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which
-    the sorted errors begin to rise steeply. The sum of the errors before the knee is the error budget."""
-    coverage: float
-    """Share of the target with a match after this pass, in [0, 1]."""
-    new_matches: int
-    """Number of target patches that received a match in this pass."""
 
 
 class SheetParams(TypedDict, total=False):
