@@ -579,6 +579,23 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
                                         size_t size);
 
 /* ==================================================================================================================
+ * Depth map
+ *
+ * A depth map of a photo is an image of the photo's size with 1 channel, in any unit of length. Pixels whose value is
+ * not positive and finite are holes, which are filled from their surroundings. luxfer_transfer_set_depth and
+ * luxfer_features_set_depth take a depth map.
+ * ================================================================================================================== */
+
+/** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
+typedef int32_t luxfer_depth_kind;
+
+/** Distance along the viewing axis. */
+#define LUXFER_DEPTH_ALONG_Z 0
+
+/** Distance along the ray of each pixel. */
+#define LUXFER_DEPTH_ALONG_RAY 1
+
+/* ==================================================================================================================
  * Strokes
  *
  * Strokes that a user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a

@@ -7,7 +7,7 @@
 #ifndef LUXFER_LIGHTING_H
 #define LUXFER_LIGHTING_H
 
-#include "transfer.h"
+#include "stages.h"
 
 #ifdef __cplusplus
 extern "C" {

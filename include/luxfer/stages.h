@@ -303,9 +303,6 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
 /** The features of a photo. See luxfer_features_create. */
 typedef struct luxfer_features luxfer_features;
 
-/** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
-typedef int32_t luxfer_depth_kind;
-
 /**
  * How a network expects the photo's colours, which are sRGB in [0, 1]: a LUXFER_NORMALISATION_ value. An ONNX file
  * does not state it.
@@ -360,12 +357,6 @@ typedef struct luxfer_features_report {
     uint64_t replaced_pixels;
 } luxfer_features_report;
 
-/** Distance along the viewing axis. */
-#define LUXFER_DEPTH_ALONG_Z 0
-
-/** Distance along the ray of each pixel. */
-#define LUXFER_DEPTH_ALONG_RAY 1
-
 /**
  * The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y, z, towards
  * the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the viewing axis, near is
@@ -417,11 +408,7 @@ luxfer_status luxfer_features_create(luxfer_context *context, luxfer_features **
 /** Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread. */
 luxfer_status luxfer_features_set_photo(luxfer_features *features, luxfer_image *photo);
 
-/**
- * Sets a depth map of the photo's size, 1 channel, in any unit. Pixels whose value is not positive and finite are
- * holes, which are filled from their surroundings. kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map.
- * Any thread.
- */
+/** Sets a depth map of the photo; kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread. */
 luxfer_status luxfer_features_set_depth(luxfer_features *features,
                                         luxfer_image *depth,
                                         luxfer_depth_kind kind);

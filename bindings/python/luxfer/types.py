@@ -88,6 +88,15 @@ class FileColour(IntEnum):
     """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
 
 
+class DepthKind(IntEnum):
+    """Quantity that a depth map measures."""
+
+    ALONG_Z = 0
+    """Distance along the viewing axis."""
+    ALONG_RAY = 1
+    """Distance along the ray of each pixel."""
+
+
 class Phase(IntEnum):
     """The mask for which strokes are painted."""
 
@@ -293,15 +302,6 @@ class FocalSource(IntEnum):
     FROM_LAMPS = 4
     """Estimated so that the lamps have equal sizes and shapes in the frontal view of their plane (lighting
     transfer only)."""
-
-
-class DepthKind(IntEnum):
-    """Quantity that a depth map measures."""
-
-    ALONG_Z = 0
-    """Distance along the viewing axis."""
-    ALONG_RAY = 1
-    """Distance along the ray of each pixel."""
 
 
 class Normalisation(IntEnum):
