@@ -252,7 +252,7 @@ void jobs_report_and_are_cancelled() {
     })).cancel());
     const Job fails = ok(Job::start(context, [&]() -> luxfer::Result<> {
         ++runs;
-        return luxfer::detail::finish(context.get(), luxfer_image_save(nullptr, "no.png", 1));
+        return luxfer::detail::to_result(context.get(), luxfer_image_save(nullptr, "no.png", 1));
     }));
     CHECK_ERROR(fails.wait(), LUXFER_INVALID_ARGUMENT);
     CHECK(runs >= 1);

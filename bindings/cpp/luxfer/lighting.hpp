@@ -155,7 +155,7 @@ inline Result<std::uint32_t> add_luminaire(const Scene &scene, const Distributio
                                            const luxfer_luminaire_params &params = LuminaireParams()) {
     std::uint32_t index = 0;
     const luxfer_status status = luxfer_scene_add_luminaire(scene.get(), distribution.get(), &params, &index);
-    return detail::finish(scene.context().get(), status, index);
+    return detail::to_result(scene.context().get(), status, index);
 }
 
 /// Finds the bodies of the lamps that a mask marks, numbered from the top. If `view` is empty, the camera is that of
@@ -171,7 +171,7 @@ inline Result<std::vector<luxfer_pendant>> find_pendants(const Context &context,
         context.get(), photo.get(), mask.get(), view.get(), places, suspensions.size(), &params, lamps.data(),
         sizeof(luxfer_pendant), lamps.size(), &count);
     lamps.resize(count);
-    return detail::finish(context.get(), status, std::move(lamps));
+    return detail::to_result(context.get(), status, std::move(lamps));
 }
 
 /// The meshes and the material that add_pendants has created.
@@ -189,7 +189,7 @@ inline Result<PlacedPendants> add_pendants(const Scene &scene, const luxfer_pend
     const luxfer_status status =
         luxfer_scene_add_pendants(scene.get(), &pendant, tops, places.size(), diameter, luminance,
                                   &placed.first_mesh, &placed.material);
-    return detail::finish(scene.context().get(), status, placed);
+    return detail::to_result(scene.context().get(), status, placed);
 }
 
 /// The correlated colour temperature in kelvin, and the signed distance Duv from the blackbody locus.
@@ -201,7 +201,7 @@ inline Result<ColourTemperature> colour_temperature(const Context &context, cons
     ColourTemperature found = {};
     const luxfer_status status =
         luxfer_colour_to_temperature(context.get(), rgb.data(), &found.kelvin, &found.duv);
-    return detail::finish(context.get(), status, found);
+    return detail::to_result(context.get(), status, found);
 }
 
 /// The linear colour, with luminance 1, of a colour temperature.
@@ -209,7 +209,7 @@ inline Result<std::array<double, 3>> colour_of_temperature(const Context &contex
     std::array<double, 3> rgb = {};
     const luxfer_status status =
         luxfer_temperature_to_colour(context.get(), temperature.kelvin, temperature.duv, rgb.data());
-    return detail::finish(context.get(), status, rgb);
+    return detail::to_result(context.get(), status, rgb);
 }
 
 /// The unified glare rating of each observer in a scene, from its luminaires.
@@ -218,7 +218,7 @@ inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span
     std::vector<luxfer_observer_glare> ratings(observers.size());
     const luxfer_status status =
         luxfer_scene_get_glare(scene.get(), observers.data(), observers.size(), 0, samples, seed, ratings.data(), 0);
-    return detail::finish(scene.context().get(), status, std::move(ratings));
+    return detail::to_result(scene.context().get(), status, std::move(ratings));
 }
 
 /// The unified glare rating of a luminance image. Pixels above `threshold` (cd/m²) are glare sources; 0 means five
@@ -232,7 +232,7 @@ inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, doubl
 inline Result<Image> false_colour(const Image &image, const luxfer_false_colour_params &params = FalseColourParams()) {
     luxfer_image *shown = nullptr;
     const luxfer_status status = luxfer_image_false_colour(image.get(), &params, &shown);
-    return detail::finish(image.context().get(), status, Image(image.context(), shown));
+    return detail::to_result(image.context().get(), status, Image(image.context(), shown));
 }
 
 /// A colour mixed from primaries, and their drive levels.
@@ -250,7 +250,7 @@ inline Result<Mixture> mix_primaries(const Context &context, const std::vector<s
     const luxfer_status status =
         luxfer_mix_primaries(context.get(), flat.data(), primaries.size(), max_drive, colour.data(),
                              mixture.drives.data(), &mixture.light, sizeof mixture.light);
-    return detail::finish(context.get(), status, std::move(mixture));
+    return detail::to_result(context.get(), status, std::move(mixture));
 }
 
 /// Finds the blackbody light that brings the mean radiance of a target nearest to a given one.
@@ -263,7 +263,7 @@ inline Result<luxfer_temperature_fit> fit_temperature(const Context &context, st
 inline Result<std::uint32_t> preset_count(const Context &context) {
     std::uint32_t count = 0;
     const luxfer_status status = luxfer_preset_get_count(context.get(), &count);
-    return detail::finish(context.get(), status, count);
+    return detail::to_result(context.get(), status, count);
 }
 
 /// The requirements of EN 12464-1 for a kind of room.

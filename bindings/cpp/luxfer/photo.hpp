@@ -59,7 +59,7 @@ public:
         Strokes strokes(drawing.context(), made);
         if (status == LUXFER_OK)
             status = luxfer_strokes_add_image(made, drawing.get());
-        return detail::finish(drawing.context().get(), status, std::move(strokes));
+        return detail::to_result(drawing.context().get(), status, std::move(strokes));
     }
 
     /// Adds a stroke along a polyline: points holds x and y of each point, in pixels, and radius is in pixels; phase
@@ -207,7 +207,7 @@ public:
     Result<std::array<double, 2>> corner(std::uint32_t luminaire, std::uint32_t corner) const {
         std::array<double, 2> point = {};
         const luxfer_status status = luxfer_emission_get_corner(get(), luminaire, corner, &point[0], &point[1]);
-        return detail::finish(context().get(), status, point);
+        return detail::to_result(context().get(), status, point);
     }
 };
 

@@ -77,7 +77,7 @@ public:
     Result<std::array<double, 3>> origin() const {
         std::array<double, 3> at = {};
         const luxfer_status status = luxfer_scene_get_origin(get(), &at[0], &at[1], &at[2]);
-        return detail::finish(context().get(), status, at);
+        return detail::to_result(context().get(), status, at);
     }
 
     /// Warnings about the scene's file: an implausible size, and features that are not rendered.
@@ -99,7 +99,7 @@ public:
         Sink sink = {writer, {}};
         const luxfer_status status = luxfer_scene_export_memory(get(), take, &sink);
         sink.caught.rethrow();
-        return detail::finish(context().get(), status);
+        return detail::to_result(context().get(), status);
     }
 
     // Parts of a scene.
@@ -171,7 +171,7 @@ public:
         PlacedEmission placed;
         const luxfer_status status =
             luxfer_scene_place_emission(get(), name.get(), texture.get(), scale.data(), &placed.mesh, &placed.material);
-        return detail::finish(context().get(), status, placed);
+        return detail::to_result(context().get(), status, placed);
     }
 
     // Queries.

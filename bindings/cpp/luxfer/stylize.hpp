@@ -117,7 +117,7 @@ public:
     static Result<Image> print(const Image &picture, const luxfer_sheet_params &params = SheetParams()) {
         luxfer_image *sheet = nullptr;
         const luxfer_status status = luxfer_sheet_print(picture.get(), &params, &sheet);
-        return detail::finish(picture.context().get(), status, Image(picture.context(), sheet));
+        return detail::to_result(picture.context().get(), status, Image(picture.context(), sheet));
     }
 
     /// The artwork from a photo of the painted sheet, and the quality of the alignment.
@@ -133,7 +133,7 @@ public:
         luxfer_sheet_report report = {};
         const luxfer_status status =
             luxfer_sheet_align(photo.get(), width, height, &params, &artwork, &report, sizeof report);
-        return detail::finish(photo.context().get(), status, Aligned{Image(photo.context(), artwork), report});
+        return detail::to_result(photo.context().get(), status, Aligned{Image(photo.context(), artwork), report});
     }
 };
 
