@@ -133,8 +133,8 @@ const PARTS: &[Part] = &[
     },
 ];
 
-/// The part that an author of a lighting-transfer plug-in includes, and the maximum number of functions in it and in the
-/// parts that it includes.
+/// The part that an author of a lighting-transfer plug-in includes, and the maximum number of functions in it and in
+/// the parts that it includes.
 const MAX_READ: (&str, usize) = ("transfer", 110);
 
 /// Maximum number of functions in all parts.

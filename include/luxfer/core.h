@@ -687,8 +687,8 @@ typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
 
 /**
  * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit, and 0
- * does not wait. During the wait, the call passes the progress and the pointer user to the function progress, which may
- * be NULL. Any thread; several threads may wait for one job.
+ * does not wait. During the wait, the call passes the progress and the pointer user to the function progress, which
+ * may be NULL. Any thread; several threads may wait for one job.
  *
  * *outcome receives the status of the work: LUXFER_OK if the job has succeeded, LUXFER_CANCELLED if a cancel request
  * came in time, LUXFER_NOT_READY if the job still runs, and otherwise the error with which the job has ended. For an
@@ -741,8 +741,8 @@ typedef int32_t (*luxfer_work_fn)(void *user);
  *
  * If the function returns an error, the job ends with this error. The message of the job is that of the last call that
  * failed on the job's thread, or of the last job that failed while the function waited for it. The error
- * LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that still
- * runs.
+ * LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that
+ * still runs.
  * LUXFER_INVALID_ARGUMENT if work is NULL.
  */
 luxfer_status luxfer_job_start(luxfer_context *context,

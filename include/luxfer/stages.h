@@ -1201,9 +1201,9 @@ luxfer_status luxfer_relight_set_target(luxfer_relight *relight,
 
 /**
  * Makes the target a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green,
- * blue. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean scale
- * of the channels without a limit, if this scale respects the limit; else the scale that just reaches the limit. Any
- * thread.
+ * blue. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
+ * scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the limit.
+ * Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
  */
 luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,

@@ -122,8 +122,8 @@ impl Drop for Job {
 }
 
 /// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit, and 0
-/// does not wait. During the wait, the call passes the progress and the pointer user to the function progress, which may
-/// be NULL. Any thread; several threads may wait for one job.
+/// does not wait. During the wait, the call passes the progress and the pointer user to the function progress, which
+/// may be NULL. Any thread; several threads may wait for one job.
 ///
 /// *outcome receives the status of the work: LUXFER_OK if the job has succeeded, LUXFER_CANCELLED if a cancel request
 /// came in time, LUXFER_NOT_READY if the job still runs, and otherwise the error with which the job has ended. For an

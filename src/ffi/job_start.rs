@@ -36,8 +36,8 @@ unsafe impl Send for User {}
 ///
 /// If the function returns an error, the job ends with this error. The message of the job is that of the last call that
 /// failed on the job's thread, or of the last job that failed while the function waited for it. The error
-/// LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that still
-/// runs.
+/// LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that
+/// still runs.
 /// LUXFER_INVALID_ARGUMENT if work is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_start(

@@ -285,9 +285,9 @@ pub unsafe extern "C" fn luxfer_relight_set_target(relight: *mut luxfer_relight,
 }
 
 /// Makes the target a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green,
-/// blue. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean scale
-/// of the channels without a limit, if this scale respects the limit; else the scale that just reaches the limit. Any
-/// thread.
+/// blue. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
+/// scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the limit.
+/// Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
 /// cbindgen:ptrs-as-arrays=[[constraint; 3]]
 #[unsafe(no_mangle)]
