@@ -94,7 +94,7 @@ fn a_picture_says_that_it_lacks_the_luminaire() {
 
         let (render, job) = rendered(context, scene);
         let beauty = made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out));
-        let layer = made(|out| luxfer_render_get_layer(render, 0, out));
+        let layer = made(|out| luxfer_render_get_layer(render, c"Luminance".as_ptr(), out));
         for (image, unseen) in [(beauty, 1), (layer, 1), (host::image(context, 4, 4, 1.0), 0)] {
             let mut report = std::mem::zeroed::<luxfer_glare_report>();
             let size = size_of_val(&report);

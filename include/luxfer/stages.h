@@ -153,7 +153,10 @@ typedef struct luxfer_rectify_report {
     uint32_t is_unwarped;
     /** Reserved; always 0. */
     uint32_t reserved;
-    /** Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. */
+    /**
+     * Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp unwarps
+     * other images of the photo's size, such as the confidence of the lights.
+     */
     double to_photo[9];
     /** Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise. */
     double corners[4][2];

@@ -198,7 +198,8 @@ pub struct luxfer_rectify_report {
     pub is_unwarped: u32,
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row.
+    /// Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp unwarps
+    /// other images of the photo's size, such as the confidence of the lights.
     pub to_photo: [f64; 9],
     /// Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise.
     pub corners: [[f64; 2]; 4],

@@ -1537,7 +1537,8 @@ class RectifyReport:
     is_unwarped: int
     """1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0."""
     to_photo: tuple[float, ...]
-    """Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row."""
+    """Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp
+    unwarps other images of the photo's size, such as the confidence of the lights."""
     corners: tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
     """Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise."""
     corner_errors: tuple[float, float, float, float]
