@@ -509,7 +509,7 @@ fn a_stage_copies_strokes_of_its_size() {
         assert_eq!(luxfer_strokes_add_text(strokes, c"not-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
         assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
         assert_eq!(luxfer_release(strokes.cast()), LUXFER_OK);
-        let strokes = made(|out| luxfer_strokes_create(context, 8, 8, out));
+        let strokes = create(8, 6);
         assert_eq!(start(), LUXFER_OK);
         assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
         assert_eq!(start(), LUXFER_DEGENERATE);

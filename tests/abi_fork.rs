@@ -191,12 +191,13 @@ unsafe extern "C" fn fork_within(forked: *mut c_void, _: f64) -> i32 {
 fn a_wait_whose_progress_function_forks_ends_in_the_child() {
     let objects = Objects::new();
     let mut forked: Option<libc::pid_t> = None;
-    let status = unsafe { wait(objects.job, -1, Some(fork_within), (&raw mut forked).cast()) };
+    let mut outcome = LUXFER_UNKNOWN;
+    let status = unsafe { luxfer_job_wait(objects.job, -1, Some(fork_within), (&raw mut forked).cast(), &mut outcome) };
     let child = forked.unwrap();
     if child == 0 {
         unsafe { libc::_exit(status) };
     }
-    assert_eq!(status, LUXFER_CANCELLED);
+    assert_eq!((status, outcome), (LUXFER_OK, LUXFER_CANCELLED));
     let mut ended = 0;
     assert_eq!(unsafe { libc::waitpid(child, &mut ended, 0) }, child);
     assert_eq!((libc::WIFEXITED(ended), libc::WEXITSTATUS(ended)), (true, LUXFER_INVALID_OPERATION));

@@ -304,9 +304,8 @@ fn refuse_settings(context: *mut luxfer_context, stylize: *mut luxfer_stylize) {
     let (good, mut job) = (params(), null_mut());
     unsafe {
         for bad in [
-            luxfer_stylize_params { mode: 6, ..good },
-            luxfer_stylize_params { mode: -1, ..good },
             luxfer_stylize_params { search: 2, ..good },
+            luxfer_stylize_params { search: -1, ..good },
             luxfer_stylize_params { patch: 4, ..good },
             luxfer_stylize_params { patch: 0, ..good },
             luxfer_stylize_params { patch: u32::MAX, ..good },
@@ -318,9 +317,6 @@ fn refuse_settings(context: *mut luxfer_context, stylize: *mut luxfer_stylize) {
             luxfer_stylize_params { final_vote: 5, ..good },
             luxfer_stylize_params { preview: 2, ..good },
             luxfer_stylize_params { keep_for_update: 7, ..good },
-            luxfer_stylize_params { occurrence: f32::NAN, ..good },
-            luxfer_stylize_params { occurrence: -1.0, ..good },
-            luxfer_stylize_params { occurrence: 10.5, ..good },
             luxfer_stylize_params { reserved: 1, ..good },
             luxfer_stylize_params { struct_size: 71, ..good },
         ] {
