@@ -112,6 +112,9 @@ impl Tally {
         for (name, covered) in
             [("filter.coverage", &self.covered), ("filter.coverage.held_back", &self.covered_held_back)]
         {
+            if covered.is_empty() {
+                continue;
+            }
             figure(name, arithmetic(covered), "%");
             figure(&format!("{name}.lowest"), covered.iter().copied().fold(f64::INFINITY, f64::min), "%");
             figure(&format!("{name}.highest"), covered.iter().copied().fold(0.0, f64::max), "%");
@@ -257,7 +260,7 @@ fn median_error(image: &Image, truth: &Image) -> f64 {
     median(&errors.collect::<Vec<f64>>())
 }
 
-/// Tells for each value of the reference whether it has noise. The values of lamps, for example, have none.
+/// Returns for each value of the reference whether it has noise. The values of lamps, for example, have none.
 fn noisy(truth: &Film) -> impl Iterator<Item = bool> {
     truth.beauty.data.iter().zip(&truth.variance.data).map(|(&t, &v)| f64::from(v) > 1e-10 * f64::from(t).powi(2))
 }
