@@ -48,7 +48,7 @@ pub const LUXFER_RENDER_INTERVAL: luxfer_render_image = 3;
 pub const LUXFER_RENDER_PREVIEW: luxfer_render_image = 4;
 /// Half the width of the 95 % interval of each pixel of the preview, in cd/m²; 3 channels. The interval includes the
 /// bias of the filter. It is infinite where a pixel has fewer than four paths. Measured in rooms with 4 to 256 paths
-/// per pixel, the intervals contain the true value of 93 % to 97 % of the pixels; along edges of surfaces it is fewer.
+/// per pixel, the intervals contain the true value of 93 % to 98 % of the pixels; along edges of surfaces it is fewer.
 /// The image exists only if luxfer_render_params.preview is not 0.
 pub const LUXFER_RENDER_PREVIEW_INTERVAL: luxfer_render_image = 5;
 
