@@ -97,7 +97,8 @@ struct Tally {
 impl Tally {
     fn print(&self, no_oidn: Option<&str>) {
         let mean = |values: &[f64]| (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp();
-        for (i, paths) in PATHS.into_iter().enumerate() {
+        let has_scenes = self.gains.iter().all(|gains| !gains.is_empty());
+        for (i, paths) in PATHS.into_iter().enumerate().filter(|_| has_scenes) {
             figure(&format!("filter.gain.{paths}"), mean(&self.gains[i]), "x");
             match no_oidn {
                 None => figure(&format!("filter.vs_oidn.{paths}"), mean(&self.vs_oidn[i]), "x"),
@@ -105,6 +106,7 @@ impl Tally {
             }
         }
         match no_oidn {
+            None if !has_scenes => {}
             None => figure("filter.vs_oidn", mean(&self.vs_oidn.concat()), "x"),
             Some(reason) => absent("filter.vs_oidn", reason),
         }
