@@ -1,6 +1,18 @@
 //! What the filter states about its result: the bias, the error, and the interval of each pixel.
 //!
-//! All three are computed from the two halves before and after filtering; `choice` explains the formulas.
+//! All three are computed from the two halves before and after filtering; `choice` explains the formulas. The formulas
+//! hold for halves that are independent of each other. The filtered halves depend on each other, so that the formulas
+//! alone state too small an error:
+//!
+//! - Both halves are filtered by the same guides, which come from the paths of both. At edges and in textures, the
+//!   noise of the guides follows the noise of the halves. This is the largest part.
+//! - Both halves are tested by the same variance, which comes from their difference.
+//! - Both halves take the same pass, whose estimated error is the least of several noisy ones.
+//! - Light that comes by rare paths is usually missing from both halves.
+//!
+//! The filtered halves then agree more than independent halves would. Measured against references, the missing error
+//! is a share of the variance that the filter removes, and this share depends little on the scene and the number of
+//! paths (docs/notes/filter.md). The statement therefore adds this share ([`SHARED`]) to the variance.
 
 use super::light::Light;
 use super::planes::{Classes, Planes};
@@ -15,6 +27,9 @@ const NORMAL_95: f32 = 1.959_964;
 const SQUARE: usize = 8;
 /// Radius in pixels over which the errors of the pixels are averaged for their intervals. [bench filter]
 const INTERVAL_RADIUS: usize = 8;
+/// Share of the removed variance that remains as an error which the halves have in common: for pixels within surfaces,
+/// and for edges of surfaces. [bench filter]
+const SHARED: [f32; 2] = [0.045, 0.3];
 
 /// The statements of the filter about its result; `Output` describes the fields.
 pub struct Statement {
@@ -27,7 +42,7 @@ impl Statement {
     /// Returns the statements about the mean of two filtered halves.
     pub fn of(light: &Light, classes: &Classes, before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Self> {
         let Image { width, height, .. } = *before[0];
-        let errors = squared_errors(before, after, job.part(0.0, 0.2))?;
+        let errors = squared_errors(classes, before, after, job.part(0.0, 0.2))?;
         let pixels = (3 * width * height) as f64;
         let mean: f64 =
             before.iter().flat_map(|image| &image.data).map(|&v| f64::from(v)).sum::<f64>() / (2.0 * pixels);
@@ -65,15 +80,18 @@ fn squared_error(errors: &Planes) -> f64 {
     bias.max(0.0) + variance
 }
 
-/// Returns six channels: estimates of the squared bias of each pixel (R, G, B), then of the variance of the mean of the
-/// two filtered halves (R, G, B). They are accurate only as means over many pixels.
-fn squared_errors(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Planes> {
+/// Returns six channels: estimates of the squared bias of each pixel (R, G, B), then of the variance of the mean of
+/// the two filtered halves, with the error that they have in common (R, G, B). They are accurate only as means over
+/// many pixels.
+fn squared_errors(classes: &Classes, before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Planes> {
     let Image { width, height, .. } = *before[0];
     Planes::from_rows([width, height, 6], job, |y, row| {
         let (biases, variances) = row.split_at_mut(3 * width);
         for x in 0..width {
             let [a, b, c, d] = [before[0], before[1], after[0], after[1]].map(|image| image.rgb(x, y));
-            let (bias, variance) = ((c - a) * (d - b), 0.25 * (c - d) * (c - d));
+            let shared = SHARED[usize::from(classes.is_first.row(y, 0)[x] > 0.0)];
+            let (bias, unfiltered, filtered) = ((c - a) * (d - b), 0.25 * (a - b) * (a - b), 0.25 * (c - d) * (c - d));
+            let variance = filtered + shared * (unfiltered - filtered);
             for channel in 0..3 {
                 biases[channel * width + x] = bias[channel];
                 variances[channel * width + x] = variance[channel];
@@ -82,9 +100,9 @@ fn squared_errors(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<P
     })
 }
 
-/// Estimates the bias of the filter, relative to the mean of the image, from the two halves before and after filtering.
-/// For each square of pixels, multiplies the mean change of one half by the mean change of the other half. The bias is
-/// the square root of the mean of these products; a negative mean counts as 0.
+/// Estimates the bias of the filter, relative to the mean of the image, from the two halves before and after
+/// filtering. For each square of pixels, multiplies the mean change of one half by the mean change of the other half.
+/// The bias is the square root of the mean of these products; a negative mean counts as 0.
 fn bias(before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<f64> {
     let Image { width, height, .. } = *before[0];
     let across = width.div_ceil(SQUARE);

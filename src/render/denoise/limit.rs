@@ -1,0 +1,43 @@
+//! The limit of the filter's changes: no half of a pixel moves by more than two standard errors of this half.
+//!
+//! The choice between the passes rests on errors that are averaged over a neighbourhood. On average, the chosen pass
+//! is better than the unfiltered picture, but a single pixel can differ from the pixels around. For example, the
+//! outline of a lamp is a row of pixels that are alike, so it does not count as an edge, and a pass that suits the
+//! wall beside it blurs it. The limit bounds the harm: the filtered value cannot contradict the paths of the pixel
+//! itself (a limited translation estimator, after Efron and Morris 1972, "Limiting the risk of Bayes and empirical
+//! Bayes estimators").
+
+use super::input::Input;
+use super::planes::Planes;
+use crate::error::Result;
+use crate::job::Job;
+
+/// Largest change of a half, in standard errors. [bench filter]
+const LIMIT: f32 = 2.0;
+/// Radius in pixels of the neighbourhood whose mean variance counts if it is larger than the pixel's own, because the
+/// own variance is too small in a pixel that has not found the light that its neighbours have found. [bench filter]
+const RADIUS: usize = 1;
+
+/// Returns the largest change of each half, per channel, in units of the picture; infinite where a variance is
+/// unknown.
+pub fn limits(input: &Input, job: Job) -> Result<Planes> {
+    let [one, other] = input.halves;
+    let own = Planes::from_rows([one.width, one.height, 3], job.part(0.0, 0.3), |y, row| {
+        for (c, plane) in row.chunks_exact_mut(one.width).enumerate() {
+            for (x, out) in plane.iter_mut().enumerate() {
+                let [v, w] = input.variances.map(|variance| variance.pixel(x, y)[c]);
+                *out = variance_of_half(one.pixel(x, y)[c] - other.pixel(x, y)[c], v, w);
+            }
+        }
+    })?;
+    let mut limits = own.smoothed(RADIUS, job.part(0.3, 1.0))?;
+    limits.data.iter_mut().zip(&own.data).for_each(|(limit, own)| *limit = LIMIT * limit.max(*own).sqrt());
+    Ok(limits)
+}
+
+/// Estimates the variance of a half from the difference between the halves and the variances that the halves state.
+/// Each half is the mean of two replications, whose spread gives its variance v or w (`film::pixel`). The squares of
+/// all four replications around their common mean add up to `2 v + 2 w + difference²`, with three degrees of freedom.
+fn variance_of_half(difference: f32, v: f32, w: f32) -> f32 {
+    (2.0 * v + 2.0 * w + difference * difference) / 6.0
+}
