@@ -587,7 +587,7 @@ layouts! {
         coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
         seed coarse_guides coarse_iterations occurrence reserved;
     luxfer_stylize_report: struct_size is_complete levels halvings patch max_uses energy used entropy guide_error
-        broken_source broken_target unblended_share;
+        broken_source broken_target unblended_share normals_weight;
     luxfer_stylize_round: struct_size passes energy;
     luxfer_stylize_pass: struct_size reserved knee coverage new_matches;
     luxfer_fixture: struct_size position normal axis radiance kind size area flux cct duv;
