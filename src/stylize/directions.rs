@@ -112,15 +112,18 @@ pub fn directions(input: &Input, normals: &Guide, source_mask: Option<&[bool]>, 
     let longer = artwork.width.max(artwork.height).div_ceil(BLOCKS);
     let cell = (longer / CELLS).max(1);
     let side = (longer / cell).max(CELLS) * cell;
+    if artwork.width.min(artwork.height) < side {
+        return Ok(Directions::default());
+    }
     let total: f32 = input.guides.iter().map(|g| g.weight).sum();
     let guides = input.guides.iter().filter(|g| g.weight > 0.0);
     let lights: Vec<Scale> = guides.map(|g| Scale::of(g, g.weight / total)).collect();
     let normals = Scale::of(normals, normals.weight / total);
-    let columns = artwork.width / side;
+    let (columns, means) = (artwork.width / side, cells(artwork, cell, job)?);
     let blocks = exec::map(columns * (artwork.height / side), job, |b| {
         let at = [b % columns, b / columns];
         let is_allowed = source_mask.is_none_or(|mask| is_inside(mask, artwork.width, at, side));
-        let angle = is_allowed.then(|| angle(artwork, at.map(|v| v * side), [side / cell, cell])).flatten()?;
+        let angle = is_allowed.then(|| angle(&means, at.map(|v| v * side / cell), side / cell)).flatten()?;
         block(&lights, &normals, at, side, angle)
     })?;
     let blocks: Vec<Block> = every(blocks.into_iter().flatten().collect(), MAX_BLOCKS);
@@ -213,28 +216,33 @@ fn block(lights: &[Scale], normals: &Scale, at: [usize; 2], side: usize, angle: 
     (deviation <= MAX_DEVIATION * MAX_DEVIATION && bend <= SIMILAR * SIMILAR).then_some(block)
 }
 
-/// Returns the direction across the strokes of a square of `cells × cells` cells of width `cell`, in radians modulo π;
-/// `None` if it has no clear direction.
-fn angle(artwork: &Image, first: [usize; 2], [cells, cell]: [usize; 2]) -> Option<f32> {
-    // Average the luminance of each cell, and of the cells around the square.
-    let row_len = cells + 2;
-    let mean = |i: usize| {
-        let start = |k: usize, first: usize, end: usize| (first + k * cell).saturating_sub(cell).min(end - cell);
-        let (x, y) = (start(i % row_len, first[0], artwork.width), start(i / row_len, first[1], artwork.height));
-        let (start, len) = (x * artwork.channels, cell * artwork.channels);
-        let row = |y: usize| artwork.row(y)[start..start + len].chunks_exact(artwork.channels).map(grey).sum::<f32>();
-        let sum: f32 = (y..y + cell).map(row).sum();
-        linear_to_srgb((sum / (cell * cell) as f32).clamp(0.0, 1.0))
-    };
-    let means: Vec<f32> = (0..row_len * row_len).map(mean).collect();
+/// Returns the mean luminance of each cell, encoded for display.
+fn cells(artwork: &Image, cell: usize, job: Job) -> Result<Image> {
+    let mut means = Image::new(artwork.width / cell, artwork.height / cell, 1)?;
+    let (columns, channels) = (means.width, artwork.channels);
+    exec::for_rows(&mut means.data, columns, job, |y, row| {
+        for line in y * cell..(y + 1) * cell {
+            for (mean, pixels) in row.iter_mut().zip(artwork.row(line).chunks_exact(cell * channels)) {
+                *mean += pixels.chunks_exact(channels).map(grey).sum::<f32>();
+            }
+        }
+        row.iter_mut().for_each(|v| *v = linear_to_srgb((*v / (cell * cell) as f32).clamp(0.0, 1.0)));
+    })?;
+    Ok(means)
+}
 
+/// Returns the direction across the strokes of a square of `side × side` cells with its corner at `first`, in radians
+/// modulo π; `None` if it has no clear direction.
+fn angle(cells: &Image, first: [usize; 2], side: usize) -> Option<f32> {
+    let at = |x: usize, y: usize| cells.data[y.min(cells.height - 1) * cells.width + x.min(cells.width - 1)];
     // Compute the covariance of the gradient. The mean gradient is that of shading.
     let [mut x, mut y, mut xx, mut xy, mut yy] = [0.0f32; 5];
-    for i in (1..=cells).flat_map(|row| (1..=cells).map(move |column| row * row_len + column)) {
-        let (dx, dy) = (0.5 * (means[i + 1] - means[i - 1]), 0.5 * (means[i + row_len] - means[i - row_len]));
+    for (x0, y0) in (first[1]..first[1] + side).flat_map(|y| (first[0]..first[0] + side).map(move |x| (x, y))) {
+        let dx = 0.5 * (at(x0 + 1, y0) - at(x0.saturating_sub(1), y0));
+        let dy = 0.5 * (at(x0, y0 + 1) - at(x0, y0.saturating_sub(1)));
         (x, y, xx, xy, yy) = (x + dx, y + dy, xx + dx * dx, xy + dx * dy, yy + dy * dy);
     }
-    let n = (cells * cells) as f32;
+    let n = (side * side) as f32;
     let (xx, xy, yy) = (xx / n - x * x / (n * n), xy / n - x * y / (n * n), yy / n - y * y / (n * n));
     let coherence = (xx - yy).hypot(2.0 * xy) / (xx + yy);
     let is_clear = coherence >= MIN_COHERENCE && xx + yy >= MIN_GRADIENT * MIN_GRADIENT;

@@ -62,8 +62,13 @@ fn only_the_pixels_that_may_be_used_decide() {
     let slopes = Guide { name: "normals", source: &normals, target: &normals, weight: 0.5, range: Range::Data };
     let masked = Input { normals: Some(slopes), source_mask: Some(&wall), ..input(&rings, &guides) };
     assert_eq!(stylise(&masked, &Params::preview()).unwrap().report.normals_weight, 0.0);
+    // An artwork smaller than a block has no directions.
+    let thin = Image::from_fn(6, 600, |_, y| [y as f32 / 600.0]).unwrap();
+    let slopes = Guide { source: &thin, target: &thin, ..slopes };
+    let output = stylise(&Input { normals: Some(slopes), ..input(&thin, &[guide(&thin, &thin)]) }, &Params::preview());
+    assert_eq!(output.unwrap().report.normals_weight, 0.0);
     // Normals of another size are an error, even where they could not be used.
     let small = Image::new(24, 18, 3).unwrap();
-    let wrong = Guide { source: &small, ..slopes };
+    let wrong = Guide { source: &small, target: &normals, ..slopes };
     assert!(stylise(&Input { normals: Some(wrong), ..masked }, &Params::preview()).is_err());
 }
