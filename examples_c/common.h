@@ -36,7 +36,9 @@ static inline int show_progress(void *title, double fraction) {
 
 /* Waits for a job, with a progress bar in a terminal, and releases it. */
 static inline void wait_and_release(luxfer_job *job, const char *title) {
-    check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title), title);
+    luxfer_status outcome;
+    check(luxfer_job_wait(job, -1, isatty(2) ? show_progress : NULL, (void *)title, &outcome), title);
+    check(outcome, title);
     check(luxfer_release(job), title);
 }
 

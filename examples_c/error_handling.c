@@ -32,6 +32,7 @@ int main(void) {
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
     luxfer_job *job = NULL;
+    luxfer_status outcome;
     luxfer_surface surface;
     luxfer_material_params material;
     luxfer_render_params params;
@@ -71,18 +72,20 @@ int main(void) {
     report("An invalid light path expression:",
            luxfer_render_add_expression(render, "direct", "C<RD>L("), LUXFER_INVALID_ARGUMENT);
 
-    /* The wait for a job returns its errors; the library checks settings when a job starts or runs. */
+    /* The library checks settings when a job starts or runs. The wait for a job gives the status of the work as the
+     * outcome, apart from the status of the call. */
     luxfer_render_params_init(&params, sizeof params);
     params.width = params.height = 16;
     luxfer_render_set_scene(render, scene);
     luxfer_render_add_expression(render, "lamp", "C.*<L.'No such lamp'>");
     if (luxfer_render_start(render, &params, &job) != LUXFER_OK) return 1;
-    report("A label that nothing bears:", luxfer_job_wait(job, -1, NULL, NULL), LUXFER_NOT_FOUND);
+    if (luxfer_job_wait(job, -1, NULL, NULL, &outcome) != LUXFER_OK) return 1;
+    report("A label that nothing bears:", outcome, LUXFER_NOT_FOUND);
     report("The picture that it would have made:",
            luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), LUXFER_NOT_READY);
 
     /* The outputs are still unchanged. A handle of the wrong kind, or NULL, is an error like any other. */
-    if (image != NULL || luxfer_job_wait(NULL, -1, NULL, NULL) != LUXFER_INVALID_ARGUMENT) return 1;
+    if (image != NULL || luxfer_job_wait(NULL, -1, NULL, NULL, &outcome) != LUXFER_INVALID_ARGUMENT) return 1;
 
     luxfer_release(job);
     luxfer_release(render);

@@ -42,7 +42,6 @@ int main(void) {
     float *all, *group[GROUPS], *mixture;
     double worst = 0;
     size_t k, count;
-    uint32_t layer;
     int g, m;
     sheet s = panels_begin(3, 2, 240, 180);
 
@@ -60,14 +59,13 @@ int main(void) {
     wait_and_release(job, "rendering");
 
     /* --8<-- [start:layers] */
-    /* Get the picture, then find the groups by their names. */
+    /* Get the picture, then the groups by their names. */
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
     panels_add(&s, 0, 0, image, 1 / WHITE);
     all = panels_pixels(image, &view);
     luxfer_release(image);
     for (g = 0; g < GROUPS; g++) {
-        check(luxfer_render_find_layer(render, names[g], &layer), names[g]);
-        check(luxfer_render_get_layer(render, layer, &image), names[g]);
+        check(luxfer_render_get_layer(render, names[g], &image), names[g]);
         panels_add(&s, (g + 1) % 3, (g + 1) / 3, image, 1 / WHITE);
         group[g] = panels_pixels(image, &view);
         luxfer_release(image);

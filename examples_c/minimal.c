@@ -16,7 +16,7 @@ int main(int argc, char **argv) {
     luxfer_image *picture = NULL;
     luxfer_render_params params;
     luxfer_render_report report;
-    luxfer_status status;
+    luxfer_status status, outcome;
 
     /* A context owns the threads. All objects are created in a context; NULL means default settings. */
     if (luxfer_context_create(NULL, &context) != LUXFER_OK) return 1;
@@ -34,9 +34,11 @@ int main(int argc, char **argv) {
     if (status == LUXFER_OK) status = luxfer_render_create(context, &render);
     if (status == LUXFER_OK) status = luxfer_render_set_scene(render, scene);
 
-    /* Long work is a job that runs on the library's threads. Wait for it without a time limit (-1). */
+    /* Long work is a job that runs on the library's threads. Wait for it without a time limit (-1). The call succeeds
+     * even if the work fails; the outcome is the status of the work. */
     if (status == LUXFER_OK) status = luxfer_render_start(render, &params, &job);
-    if (status == LUXFER_OK) status = luxfer_job_wait(job, -1, NULL, NULL);
+    if (status == LUXFER_OK) status = luxfer_job_wait(job, -1, NULL, NULL, &outcome);
+    if (status == LUXFER_OK) status = outcome;
 
     /* Pictures are in cd/m2; the last argument is the exposure: with 0.005, 200 cd/m2 become white. */
     if (status == LUXFER_OK) status = luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, &picture);

@@ -39,7 +39,7 @@ int main(void) {
     luxfer_render_report report;
     luxfer_job *job = NULL;
     luxfer_image *picture = NULL;
-    luxfer_status status;
+    luxfer_status outcome;
     double fraction = 0;
     int frames = 0;
     watch w = {NULL, 0};
@@ -57,18 +57,19 @@ int main(void) {
     /* --8<-- [start:wait] */
     w.render = render;
     check(luxfer_render_start(render, &params, &job), "start");
-    status = luxfer_job_wait(job, -1, on_progress, &w);
-    printf("the wait ended with %s\n", luxfer_status_get_name(status));
+    check(luxfer_job_wait(job, -1, on_progress, &w, &outcome), "wait");
+    printf("the job ended with %s\n", luxfer_status_get_name(outcome));
     /* --8<-- [end:wait] */
     luxfer_release(job);
-    if (status != LUXFER_CANCELLED) return 1;
+    if (outcome != LUXFER_CANCELLED) return 1;
 
     /* The passes before the cancel give a picture, with its error. */
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &picture), "picture");
     check(luxfer_render_get_report(render, &report, sizeof report), "report");
     /* --8<-- [start:start] */
     check(luxfer_job_start(context, save, picture, &job), "start");
-    check(luxfer_job_wait(job, -1, NULL, NULL), "picture");
+    check(luxfer_job_wait(job, -1, NULL, NULL, &outcome), "wait");
+    check(outcome, "picture");
     luxfer_release(job);
     /* --8<-- [end:start] */
     printf("%u paths per pixel are in progress_and_cancel.png\n", report.samples);
@@ -77,17 +78,19 @@ int main(void) {
     /* 2. Waiting in a loop of the program: wait at most 16 ms, then draw a frame of the user interface. */
     check(luxfer_render_start(render, &params, &job), "start");
     /* --8<-- [start:loop] */
-    while ((status = luxfer_job_wait(job, 16, NULL, NULL)) == LUXFER_NOT_READY) {
-        check(luxfer_job_get_progress(job, &fraction, NULL), "poll");
+    for (;;) {
+        check(luxfer_job_wait(job, 16, NULL, NULL, &outcome), "wait");
+        if (outcome != LUXFER_NOT_READY) break;
+        check(luxfer_job_get_progress(job, &fraction), "progress");
         /* Any thread may cancel; the work ends within about 100 ms. Releasing the job cancels it too. */
         if (++frames == 20) check(luxfer_job_cancel(job), "cancel");
     }
     /* --8<-- [end:loop] */
-    printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_get_name(status));
+    printf("%d frames were drawn until it ended with %s\n", frames, luxfer_status_get_name(outcome));
     luxfer_release(job);
 
     luxfer_release(render);
     luxfer_release(scene);
     luxfer_release(context);
-    return status == LUXFER_CANCELLED ? 0 : 1;
+    return outcome == LUXFER_CANCELLED ? 0 : 1;
 }

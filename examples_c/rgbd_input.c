@@ -19,7 +19,6 @@ static luxfer_image *measure_depth(void) {
     luxfer_render_params params;
     luxfer_image *depth = NULL;
     luxfer_job *job = NULL;
-    uint32_t layer = 0;
     check(luxfer_demo_create_scene(context, LUXFER_DEMO_EXEMPLAR_ROOM, &office), "depth");
     check(luxfer_render_create(context, &render), "depth");
     check(luxfer_render_set_scene(render, office), "depth");
@@ -30,8 +29,7 @@ static luxfer_image *measure_depth(void) {
     params.samples = 2;
     check(luxfer_render_start(render, &params, &job), "depth");
     wait_and_release(job, "measuring the depth");
-    check(luxfer_render_find_layer(render, "Depth", &layer), "depth");
-    check(luxfer_render_get_layer(render, layer, &depth), "depth");
+    check(luxfer_render_get_layer(render, "Depth", &depth), "depth");
     luxfer_release(render);
     luxfer_release(office);
     return depth;

@@ -20,6 +20,9 @@
  * Units: metres, radians, right-handed, Y up. Colours are scene-linear Rec.709; luminance is in cd/m², illuminance in
  * lux, luminous flux in lumens.
  *
+ * A colour, or an amount of light per channel, is an array of three numbers: red, green, blue. The numbers are floats.
+ * They are doubles in the estimates of solvers and in calculations with such estimates or with the colours of LEDs.
+ *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */
 #ifndef LUXFER_H

@@ -3,7 +3,7 @@
 
 mod host;
 
-use host::{context, image, made, message, scene, view};
+use host::{context, image, made, message, scene, view, wait};
 use luxfer::ffi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};
@@ -344,8 +344,9 @@ fn scenes_are_checked_as_they_are_described() {
         assert_eq!(add(&luxfer_mesh_params { position_stride: 8, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(add(&luxfer_mesh_params { vertex_count: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
         assert_eq!(add(&luxfer_mesh_params { position_stride: usize::MAX, ..mesh }), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), -1.0, 0.0, 0.0), LUXFER_INVALID_ARGUMENT);
-        assert_eq!(luxfer_scene_set_emission(scene, 7, 1.0, 1.0, 1.0), LUXFER_NOT_FOUND);
+        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), [-1.0, 0.0, 0.0].as_ptr()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_environment(scene, null_mut(), null()), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_scene_set_material(scene, 7, null()), LUXFER_NOT_FOUND);
 
         let mut counts = std::mem::zeroed::<luxfer_scene_counts>();
         assert_eq!(luxfer_scene_get_counts(scene, &mut counts, 0), LUXFER_INVALID_ARGUMENT);
@@ -491,7 +492,7 @@ fn a_stage_copies_strokes_of_its_size() {
     let segment = made(|out| unsafe { luxfer_segment_create(context, out) });
     let start = || unsafe {
         let job = made(|out| luxfer_segment_start(segment, null(), out));
-        let status = luxfer_job_wait(job, -1, None, null_mut());
+        let status = wait(job, -1, None, null_mut());
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         status
     };
@@ -502,12 +503,13 @@ fn a_stage_copies_strokes_of_its_size() {
         assert_eq!(luxfer_segment_set_strokes(segment, 2, strokes), LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, small.cast()), LUXFER_INVALID_ARGUMENT);
 
-        // The stage has a copy of the strokes, so later changes by the caller do not reach it.
+        // The stage has a copy of the strokes, so it keeps them after the caller has released them.
         let points = [1.0f32, 1.0, 6.0, 1.0];
         assert_eq!(luxfer_strokes_add(strokes, LUXFER_PHASE_PLANE, points.as_ptr(), 2, 1.0, 1), LUXFER_OK);
         assert_eq!(luxfer_strokes_add_text(strokes, c"not-plane 1 1 5 6 5".as_ptr()), LUXFER_OK);
         assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
-        assert_eq!(luxfer_strokes_clear(strokes), LUXFER_OK);
+        assert_eq!(luxfer_release(strokes.cast()), LUXFER_OK);
+        let strokes = create(8, 6);
         assert_eq!(start(), LUXFER_OK);
         assert_eq!(luxfer_segment_set_strokes(segment, LUXFER_PHASE_PLANE, strokes), LUXFER_OK);
         assert_eq!(start(), LUXFER_DEGENERATE);

@@ -4,7 +4,7 @@
 
 mod host;
 
-use host::{context, image, made, message, scene, view};
+use host::{context, image, made, message, scene, view, wait};
 use luxfer::ffi::*;
 use std::ffi::c_void;
 use std::fs;
@@ -96,9 +96,9 @@ impl Objects {
                 trace(self.scene).0,
                 luxfer_render_set_scene(self.render, self.scene),
                 luxfer_render_start(self.render, null(), std::ptr::from_mut(job).cast()),
-                luxfer_job_get_progress(self.job, null_mut(), null_mut()),
+                luxfer_job_get_progress(self.job, &mut 0.0),
                 luxfer_job_cancel(self.job),
-                luxfer_job_wait(self.job, -1, None, null_mut()),
+                luxfer_job_wait(self.job, -1, None, null_mut(), &mut 0),
                 luxfer_retain(self.job.cast()),
             ]
         }
@@ -140,9 +140,9 @@ fn a_child_cannot_use_the_objects_of_its_parent_and_has_its_own() {
         unsafe {
             assert_eq!(luxfer_render_set_scene(spare, objects.scene), LUXFER_INVALID_OPERATION);
             assert!(message(own.context).contains("before the process was forked"));
-            assert_eq!(luxfer_job_wait(own.job, 50, None, null_mut()), LUXFER_NOT_READY);
+            assert_eq!(wait(own.job, 50, None, null_mut()), LUXFER_NOT_READY);
             assert_eq!(luxfer_job_cancel(own.job), LUXFER_OK);
-            assert_eq!(luxfer_job_wait(own.job, -1, None, null_mut()), LUXFER_CANCELLED);
+            assert_eq!(wait(own.job, -1, None, null_mut()), LUXFER_CANCELLED);
             assert_eq!(luxfer_release(spare.cast()), LUXFER_OK);
         }
         assert_eq!(own.release(), [LUXFER_OK; 5]);
@@ -152,7 +152,7 @@ fn a_child_cannot_use_the_objects_of_its_parent_and_has_its_own() {
     assert_eq!(trace(objects.scene), (LUXFER_OK, 2.0));
     unsafe {
         assert_eq!(luxfer_job_cancel(objects.job), LUXFER_OK);
-        assert_eq!(luxfer_job_wait(objects.job, -1, None, null_mut()), LUXFER_CANCELLED);
+        assert_eq!(wait(objects.job, -1, None, null_mut()), LUXFER_CANCELLED);
     }
     assert_eq!(objects.release(), [LUXFER_OK; 5]);
 }
@@ -191,12 +191,13 @@ unsafe extern "C" fn fork_within(forked: *mut c_void, _: f64) -> i32 {
 fn a_wait_whose_progress_function_forks_ends_in_the_child() {
     let objects = Objects::new();
     let mut forked: Option<libc::pid_t> = None;
-    let status = unsafe { luxfer_job_wait(objects.job, -1, Some(fork_within), (&raw mut forked).cast()) };
+    let mut outcome = LUXFER_UNKNOWN;
+    let status = unsafe { luxfer_job_wait(objects.job, -1, Some(fork_within), (&raw mut forked).cast(), &mut outcome) };
     let child = forked.unwrap();
     if child == 0 {
         unsafe { libc::_exit(status) };
     }
-    assert_eq!(status, LUXFER_CANCELLED);
+    assert_eq!((status, outcome), (LUXFER_OK, LUXFER_CANCELLED));
     let mut ended = 0;
     assert_eq!(unsafe { libc::waitpid(child, &mut ended, 0) }, child);
     assert_eq!((libc::WIFEXITED(ended), libc::WEXITSTATUS(ended)), (true, LUXFER_INVALID_OPERATION));

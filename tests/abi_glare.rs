@@ -3,7 +3,7 @@
 
 mod host;
 
-use host::{context, made, message, scene};
+use host::{context, made, message, scene, wait};
 use luxfer::ffi::*;
 use std::ffi::CStr;
 use std::ptr::null_mut;
@@ -52,7 +52,7 @@ fn rendered(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut lux
         assert_eq!(luxfer_init(LUXFER_STRUCT_RENDER_PARAMS, (&raw mut params).cast(), size_of_val(&params)), LUXFER_OK);
         params = luxfer_render_params { width: 16, height: 12, samples: 4, ..params };
         let job = made(|out| luxfer_render_start(render, &params, out));
-        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));
+        assert_eq!(wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));
         (render, job)
     }
 }
@@ -94,7 +94,7 @@ fn a_picture_says_that_it_lacks_the_luminaire() {
 
         let (render, job) = rendered(context, scene);
         let beauty = made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out));
-        let layer = made(|out| luxfer_render_get_layer(render, 0, out));
+        let layer = made(|out| luxfer_render_get_layer(render, c"Luminance".as_ptr(), out));
         for (image, unseen) in [(beauty, 1), (layer, 1), (host::image(context, 4, 4, 1.0), 0)] {
             let mut report = std::mem::zeroed::<luxfer_glare_report>();
             let size = size_of_val(&report);

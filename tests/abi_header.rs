@@ -8,7 +8,7 @@
 #![cfg(feature = "stylize")]
 
 use luxfer::ffi::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::mem::offset_of;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ struct Part {
     name: &'static str,
     /// Its content in a few words.
     title: &'static str,
-    /// The parts whose types it uses.
+    /// The parts whose types it uses. Of a struct of another part it may only use pointers; see [`with_forward`].
     includes: &'static [&'static str],
     /// The files of `src/ffi` from which it is generated, in order.
     groups: &'static [&'static str],
@@ -39,6 +39,7 @@ const PARTS: &[Part] = &[
             "references",
             "image",
             "photo",
+            "depth",
             "strokes",
             "job",
             "job_start",
@@ -85,13 +86,13 @@ const PARTS: &[Part] = &[
     Part {
         name: "transfer",
         title: "the lighting transfer from end to end, and warnings",
-        includes: &["render", "stages"],
+        includes: &["scene"],
         groups: &["pattern", "transfer", "transfer_results", "warning", "warning_create"],
     },
     Part {
         name: "lighting",
         title: "lighting design: illuminance, powers, places and bodies of lamps, photometry",
-        includes: &["transfer"],
+        includes: &["stages"],
         groups: &[
             "illuminance",
             "lamps",
@@ -115,7 +116,7 @@ const PARTS: &[Part] = &[
     Part {
         name: "plan",
         title: "settings for a given error or time",
-        includes: &["transfer", "stylize"],
+        includes: &["transfer", "stages", "render", "stylize"],
         groups: &["plan", "plan_stylize"],
     },
     Part {
@@ -132,8 +133,9 @@ const PARTS: &[Part] = &[
     },
 ];
 
-/// The parts that an author of a lighting-transfer plug-in has to read, and the maximum number of functions in them.
-const MAX_READ: (&[&str], usize) = (&["core", "scene", "transfer"], 110);
+/// The part that an author of a lighting-transfer plug-in includes, and the maximum number of functions in it and in
+/// the parts that it includes.
+const MAX_READ: (&str, usize) = ("transfer", 110);
 
 /// Maximum number of functions in all parts.
 const MAX_FUNCTIONS: usize = 230;
@@ -168,7 +170,7 @@ fn each_part_compiles_alone() {
             check_syntax(compiler, standard, &file);
         }
     }
-    let read: usize = MAX_READ.0.iter().map(|name| functions(&part(name)).len()).sum();
+    let read: usize = with_included(MAX_READ.0).iter().map(|name| functions(&part(name)).len()).sum();
     assert!(read <= MAX_READ.1, "{read} functions");
     let all = functions(&header()).len();
     assert!(all <= MAX_FUNCTIONS, "{all} functions");
@@ -348,7 +350,11 @@ fn generate() -> Vec<(String, String)> {
     // Name the structs of settings: cbindgen leaves out structs that no function of their own file takes.
     config.export.include = settings.clone();
     let mut files = vec![("luxfer.h".to_string(), guarded(umbrella.trim_start(), "LUXFER_H", &includes))];
-    for part in PARTS {
+    let sections = |part: &Part| {
+        part.groups.iter().map(|g| with_initialisers(&section(&config, g), &settings)).collect::<String>()
+    };
+    let texts: Vec<(&str, String)> = PARTS.iter().map(|part| (part.name, sections(part))).collect();
+    for (part, (_, text)) in PARTS.iter().zip(&texts) {
         let head = format!(
             "/* luxfer: {}.\n *\n * tests/abi_header.rs generates this file from src/ffi.\n *\n \
              * SPDX-License-Identifier: MIT OR Apache-2.0\n */\n",
@@ -359,12 +365,49 @@ fn generate() -> Vec<(String, String)> {
             others => others.iter().map(|other| format!("#include \"{other}.h\"\n")).collect(),
         };
         body += "\n#ifdef __cplusplus\nextern \"C\" {\n#endif\n";
-        body.extend(part.groups.iter().map(|group| with_initialisers(&section(&config, group), &settings)));
+        body += &with_forward(part, text, &texts);
         body += "\n#ifdef __cplusplus\n}\n#endif\n";
         let guard = format!("LUXFER_{}_H", part.name.to_uppercase());
         files.push((format!("luxfer/{}.h", part.name), guarded(&head, &guard, &body)));
     }
     files
+}
+
+/// The names of a part and of all parts that it includes, also indirectly.
+fn with_included(name: &str) -> BTreeSet<&'static str> {
+    let part = PARTS.iter().find(|part| part.name == name).expect(name);
+    let mut names: BTreeSet<&str> = part.includes.iter().flat_map(|name| with_included(name)).collect();
+    names.insert(part.name);
+    names
+}
+
+/// Declares the structs of parts that a part does not include, of which it uses only pointers. A `typedef` must not be
+/// repeated in C99, so `text` names these structs with `struct`.
+fn with_forward(part: &Part, text: &str, texts: &[(&str, String)]) -> String {
+    let included = with_included(part.name);
+    let others = texts.iter().filter(|(name, _)| !included.contains(name));
+    let foreign: BTreeSet<&str> = others
+        .flat_map(|(_, text)| text.lines().filter_map(|l| l.strip_prefix("typedef struct ")?.split([' ', ';']).next()))
+        .collect();
+    let (mut used, mut out) = (BTreeSet::new(), String::new());
+    let is_separator = |c: char| !c.is_alphanumeric() && c != '_';
+    for line in text.lines() {
+        let is_comment = line.trim_start().starts_with(['*', '/']);
+        // Each piece is a word with the separator behind it.
+        for piece in line.split_inclusive(is_separator) {
+            if let Some(name) = foreign.get(piece.trim_end_matches(is_separator)).filter(|_| !is_comment) {
+                used.insert(*name);
+                out += "struct ";
+            }
+            out += piece;
+        }
+        out += "\n";
+    }
+    if used.is_empty() {
+        return out;
+    }
+    let declared: String = used.iter().map(|name| format!("struct {name};\n")).collect();
+    format!("\n/* Structs of parts that this part does not include. */\n{declared}{out}")
 }
 
 fn guarded(head: &str, guard: &str, body: &str) -> String {
@@ -568,7 +611,7 @@ layouts! {
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size in_gamut colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;
-    luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling;
+    luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling name;
     luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size;
     luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights
         emission relight render pattern;
@@ -583,12 +626,10 @@ layouts! {
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;
     luxfer_sheet_report: struct_size marks residual error to_photo;
     luxfer_guides_params: struct_size width height samples camera smooth seed;
-    luxfer_stylize_params: struct_size mode search patch guide_weight levels iterations finest_iterations polish search_iterations
-        coverage passes settle seam vote final_vote preview keep_for_update coherence match_appearance
-        seed coarse_guides coarse_iterations occurrence reserved;
+    luxfer_stylize_params: struct_size search patch guide_weight coarse_guides levels iterations coarse_iterations
+        finest_iterations polish search_iterations coverage passes settle seam vote final_vote preview keep_for_update
+        coherence match_appearance reserved seed;
     luxfer_stylize_report: struct_size is_complete levels halvings patch max_uses energy used entropy guide_error
         broken_source broken_target unblended_share normals_weight;
-    luxfer_stylize_round: struct_size passes energy;
-    luxfer_stylize_pass: struct_size reserved knee coverage new_matches;
     luxfer_fixture: struct_size position normal axis radiance kind size area flux cct duv;
 }

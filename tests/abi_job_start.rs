@@ -3,7 +3,7 @@
 
 mod host;
 
-use host::{context, image, made, message, scene};
+use host::{context, image, made, message, scene, wait};
 use luxfer::ffi::*;
 use std::ffi::c_void;
 use std::ptr::null_mut;
@@ -37,7 +37,7 @@ fn run(
         requested = Instant::now();
         assert_eq!(unsafe { luxfer_job_cancel(job) }, LUXFER_OK);
     }
-    let status = unsafe { luxfer_job_wait(job, -1, None, null_mut()) };
+    let status = unsafe { wait(job, -1, None, null_mut()) };
     let (late, text) = (requested.elapsed(), message(context));
     unsafe {
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
@@ -71,7 +71,7 @@ unsafe extern "C" fn render(user: *mut c_void) -> luxfer_status {
         let params = luxfer_render_params { width: 64, height: 64, samples: 1 << 20, ..params };
         let job = made(|out| luxfer_render_start(render, &params, out));
         work.begun.send(()).unwrap();
-        let status = luxfer_job_wait(job, -1, None, null_mut());
+        let status = wait(job, -1, None, null_mut());
         work.statuses.push(status);
         luxfer_release(job.cast());
         luxfer_release(render.cast());
@@ -140,7 +140,8 @@ unsafe extern "C" fn release_itself(user: *mut c_void) -> luxfer_status {
         std::thread::sleep(Duration::from_millis(1));
     };
     unsafe {
-        work.statuses.push(luxfer_job_wait(job, -1, None, null_mut()));
+        work.statuses.push(luxfer_job_wait(job, -1, None, null_mut(), &mut 0));
+        assert_eq!(wait(job, 0, None, null_mut()), LUXFER_NOT_READY);
         work.statuses.push(luxfer_release(job.cast()));
         // Releasing its last reference has cancelled the job, so this call is cancelled too.
         work.statuses.push(rate_for_minutes(work.scene));
@@ -185,7 +186,7 @@ fn progress_is_that_of_the_calls() {
     let job = made(|out| unsafe { luxfer_job_start(context, Some(rate_shortly), scene.cast(), out) });
     let mut seen: Vec<f64> = Vec::new();
     unsafe {
-        assert_eq!(luxfer_job_wait(job, -1, Some(note), (&raw mut seen).cast()), LUXFER_OK, "{}", message(context));
+        assert_eq!(wait(job, -1, Some(note), (&raw mut seen).cast()), LUXFER_OK, "{}", message(context));
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);

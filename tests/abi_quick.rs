@@ -3,7 +3,7 @@
 
 mod host;
 
-use host::{context, image, made, message, scene};
+use host::{context, image, made, message, scene, wait};
 use luxfer::ffi::*;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};
@@ -40,7 +40,7 @@ impl Endless {
         let (render, job) = start_render(context, 1 << 20);
         let mut fraction = 0.0;
         while fraction == 0.0 {
-            assert_eq!(unsafe { luxfer_job_get_progress(job, &mut fraction, null_mut()) }, LUXFER_OK);
+            assert_eq!(unsafe { luxfer_job_get_progress(job, &mut fraction) }, LUXFER_OK);
             std::thread::sleep(Duration::from_millis(1));
         }
         Self { render, job }
@@ -49,7 +49,7 @@ impl Endless {
     fn end(self) {
         unsafe {
             assert_eq!(luxfer_job_cancel(self.job), LUXFER_OK);
-            assert_eq!(luxfer_job_wait(self.job, -1, None, null_mut()), LUXFER_CANCELLED);
+            assert_eq!(wait(self.job, -1, None, null_mut()), LUXFER_CANCELLED);
             assert_eq!(luxfer_release(self.job.cast()), LUXFER_OK);
             assert_eq!(luxfer_release(self.render.cast()), LUXFER_OK);
         }
@@ -78,7 +78,7 @@ impl Objects {
         let sheet = made(|out| unsafe { luxfer_sheet_print(image, &sheet_params, out) });
         let (render, job) = start_render(context, 16);
         unsafe {
-            assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK);
+            assert_eq!(wait(job, -1, None, null_mut()), LUXFER_OK);
             assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         }
         Self { context, image, scene: scene(context), sheet, sheet_params, render }
@@ -210,7 +210,7 @@ fn a_cancel_is_answered_while_a_progress_function_calls_the_library() {
             assert_eq!(unsafe { luxfer_job_cancel(job as *mut luxfer_job) }, LUXFER_OK);
             Instant::now()
         });
-        let status = unsafe { luxfer_job_wait(endless.job, -1, Some(trace_one), scene.cast()) };
+        let status = unsafe { wait(endless.job, -1, Some(trace_one), scene.cast()) };
         let answered = Instant::now();
         assert_eq!(status, LUXFER_CANCELLED);
         let late = answered - canceller.join().unwrap();
@@ -232,10 +232,10 @@ fn a_job_that_waits_for_another_is_cancelled_at_once() {
     let endless = Endless::start(context);
     let (render, job) = start_render(context, 4);
     unsafe {
-        assert_eq!(luxfer_job_wait(job, 50, None, null_mut()), LUXFER_NOT_READY);
+        assert_eq!(wait(job, 50, None, null_mut()), LUXFER_NOT_READY);
         assert_eq!(luxfer_job_cancel(job), LUXFER_OK);
         let clock = Instant::now();
-        assert_eq!(luxfer_job_wait(job, 2000, None, null_mut()), LUXFER_CANCELLED);
+        assert_eq!(wait(job, 2000, None, null_mut()), LUXFER_CANCELLED);
         assert!(clock.elapsed() < Duration::from_millis(500), "{:?}", clock.elapsed());
         // The renderer accepts the next job, which waits until the endless job has ended.
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);

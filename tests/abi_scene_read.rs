@@ -57,7 +57,7 @@ fn materials_and_textures_come_back() {
     unsafe {
         let (mut mesh, mut index) = (0, 0);
         let name = c"Lamp".as_ptr();
-        let status = luxfer_scene_place_emission(scene, name, light, 1.0, 2.0, 3.0, &mut mesh, &mut index);
+        let status = luxfer_scene_place_emission(scene, name, light, [1.0, 2.0, 3.0].as_ptr(), &mut mesh, &mut index);
         assert_eq!(status, LUXFER_OK, "{}", message(context));
         let mut material: luxfer_material_params = zeroed();
         assert_eq!(luxfer_scene_get_material(scene, index, &mut material, size_of_val(&material)), LUXFER_OK);

@@ -3,7 +3,7 @@
 
 mod host;
 
-use host::{context, made, message, view};
+use host::{context, made, message, view, wait};
 use luxfer::ffi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::null_mut;
@@ -33,7 +33,7 @@ fn doubtful(context: *mut luxfer_context) -> *mut luxfer_segment {
 fn run(segment: *mut luxfer_segment) {
     let job = made(|out| unsafe { luxfer_segment_start(segment, std::ptr::null(), out) });
     unsafe {
-        assert_eq!(luxfer_job_wait(job, -1, None, null_mut()), LUXFER_OK);
+        assert_eq!(wait(job, -1, None, null_mut()), LUXFER_OK);
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
     }
 }

@@ -80,7 +80,9 @@ def declaration(text: str, doc: str = "") -> Field:
 
 def parameters(text: str) -> list[Field]:
     text = " ".join(text.split())
-    return [] if text == "void" else [declaration(part) for part in text.split(",")]
+    declared = [] if text == "void" else [declaration(part) for part in text.split(",")]
+    # An array as a parameter is a pointer.
+    return [Field(f.name, f.type, f.stars + 1, []) if f.dims else f for f in declared]
 
 
 def members(body: str) -> list[Field]:

@@ -36,7 +36,6 @@ RENAMED = {
     "candidates_count": "candidates_get_count",
     "warnings_count": "warnings_get_count",
     "preset_count": "preset_get_count",
-    "preset_name": "preset_get_name",
     "guides_motion": "guides_get_motion",
     "colour_temperature": "colour_to_temperature",
     "colour_of_temperature": "temperature_to_colour",
@@ -61,7 +60,12 @@ GONE = [
     (["scene_set_environment_image"], "`luxfer_scene_set_environment` takes an image"),
     (["scene_read_mesh", "scene_read_mesh_uvs", "scene_read_mesh_colours"], "`luxfer_scene_read_vertices`, `luxfer_scene_read_triangles`"),
     (["render_set_camera_index"], "`luxfer_scene_get_camera`, then `luxfer_render_set_camera`"),
-    (["job_poll", "job_status"], "`luxfer_job_get_progress`"),
+    (["job_poll", "job_status"], "`luxfer_job_get_progress`, and the outcome that `luxfer_job_wait` writes"),
+    (["scene_set_emission"], "`luxfer_scene_get_material`, then `luxfer_scene_set_material`"),
+    (["rectify_warp"], "`luxfer_image_warp` with the homography of the report"),
+    (["render_find_layer"], "`luxfer_render_get_layer` takes the name"),
+    (["preset_name"], "a field of `luxfer_preset`"),
+    (["stylize_get_level", "stylize_get_round", "stylize_get_pass"], "nothing: they served comparisons of methods"),
     (["power_density"], "a formula of one line: flux / efficacy / area"),
 ]
 

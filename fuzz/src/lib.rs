@@ -172,11 +172,13 @@ pub fn part(data: &[u8]) {
     }
 }
 
-/// Waits for a job for at most a second, checks the status, and releases the job.
+/// Waits for a job for at most a second, checks its outcome, and releases the job.
 unsafe fn wait(job: Option<*mut luxfer_job>) {
     if let Some(job) = job {
         unsafe {
-            check("luxfer_job_wait", luxfer_job_wait(job, 1000, None, null_mut()));
+            let mut outcome = 0;
+            check("luxfer_job_wait", luxfer_job_wait(job, 1000, None, null_mut(), &mut outcome));
+            check("the job", outcome);
             luxfer_release(job.cast());
         }
     }

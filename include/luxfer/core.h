@@ -579,6 +579,23 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
                                         size_t size);
 
 /* ==================================================================================================================
+ * Depth map
+ *
+ * A depth map of a photo is an image of the photo's size with 1 channel, in any unit of length. Pixels whose value is
+ * not positive and finite are holes, which are filled from their surroundings. luxfer_transfer_set_depth and
+ * luxfer_features_set_depth take a depth map.
+ * ================================================================================================================== */
+
+/** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
+typedef int32_t luxfer_depth_kind;
+
+/** Distance along the viewing axis. */
+#define LUXFER_DEPTH_ALONG_Z 0
+
+/** Distance along the ray of each pixel. */
+#define LUXFER_DEPTH_ALONG_RAY 1
+
+/* ==================================================================================================================
  * Strokes
  *
  * Strokes that a user paints on a photo to show where the plane and the lights are. Add strokes point by point, as a
@@ -643,9 +660,6 @@ luxfer_status luxfer_strokes_add_image(luxfer_strokes *strokes,
 luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
                                       const char *description);
 
-/** Removes all strokes of a set. Stages keep their copies. Any thread. */
-luxfer_status luxfer_strokes_clear(luxfer_strokes *strokes);
-
 /* ==================================================================================================================
  * Job
  *
@@ -672,30 +686,29 @@ typedef struct luxfer_job luxfer_job;
 typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
 
 /**
- * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
- * During the wait, the call passes the progress and the pointer user to the function progress, which may be NULL. Any
- * thread; several threads may wait for one job.
+ * Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit, and 0
+ * does not wait. During the wait, the call passes the progress and the pointer user to the function progress, which
+ * may be NULL. Any thread; several threads may wait for one job.
  *
- * Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the message
- * of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other
- * job also cancels this job.
- * LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY if the wait timed out (the job continues);
- * LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
+ * *outcome receives the status of the work: LUXFER_OK if the job has succeeded, LUXFER_CANCELLED if a cancel request
+ * came in time, LUXFER_NOT_READY if the job still runs, and otherwise the error with which the job has ended. For an
+ * error, luxfer_context_get_last_error then gives the message of the job. The call itself returns LUXFER_OK whatever
+ * the outcome. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other job
+ * also cancels this job.
+ * LUXFER_INVALID_ARGUMENT if outcome is NULL; LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
  */
 luxfer_status luxfer_job_wait(luxfer_job *job,
                               int32_t timeout_ms,
                               luxfer_progress_fn progress,
-                              void *user);
+                              void *user,
+                              luxfer_status *outcome);
 
 /**
- * Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1], which is 1
- * only after success. *outcome receives the status with which the job has ended, as luxfer_job_wait returns it, or
- * LUXFER_NOT_READY while the job runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any
- * thread.
+ * Gets the progress of a job without waiting, in [0, 1]; it is 1 only after success. The call succeeds whether the job
+ * runs, has succeeded or has failed; luxfer_job_wait says which. Any thread.
  */
 luxfer_status luxfer_job_get_progress(luxfer_job *job,
-                                      double *fraction,
-                                      luxfer_status *outcome);
+                                      double *fraction);
 
 /**
  * Asks a job to end early and returns at once; the job ends within about 100 ms. A request cannot be withdrawn. A
@@ -727,8 +740,9 @@ typedef int32_t (*luxfer_work_fn)(void *user);
  * this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture.
  *
  * If the function returns an error, the job ends with this error. The message of the job is that of the last call that
- * failed on the job's thread. The error LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because
- * luxfer_job_wait returns LUXFER_NOT_READY for a job that still runs.
+ * failed on the job's thread, or of the last job that failed while the function waited for it. The error
+ * LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that
+ * still runs.
  * LUXFER_INVALID_ARGUMENT if work is NULL.
  */
 luxfer_status luxfer_job_start(luxfer_context *context,

@@ -7,7 +7,7 @@
 #ifndef LUXFER_LIGHTING_H
 #define LUXFER_LIGHTING_H
 
-#include "transfer.h"
+#include "stages.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -277,17 +277,14 @@ luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
  * ================================================================================================================== */
 
 /**
- * Adds a goal: (red, green, blue) is the mean radiance that a mesh should have, in cd/m² per channel, each in [0,
- * 1e15]. quantity is a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other
- * goals. Any thread.
+ * Adds a goal: rgb is the mean radiance that a mesh should have, in cd/m² per channel, each in [0, 1e15]. quantity is
+ * a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other goals. Any thread.
  * LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
  */
 luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
                                     uint32_t mesh,
                                     luxfer_quantity quantity,
-                                    float red,
-                                    float green,
-                                    float blue,
+                                    const float rgb[3],
                                     double weight);
 
 /**
@@ -301,16 +298,14 @@ luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     double weight);
 
 /**
- * Makes a goal a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three channels.
+ * Makes a goal a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green, blue.
  * For a goal in lux, the three values must be equal. The parameter goal is the number of the goal: goals are numbered
  * from 0 in the order in which they were added. Without this call a goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
  * LUXFER_NOT_FOUND if there is no such goal.
  */
 luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
                                           uint32_t goal,
-                                          luxfer_constraint red,
-                                          luxfer_constraint green,
-                                          luxfer_constraint blue);
+                                          const luxfer_constraint constraint[3]);
 
 /**
  * Sets the dimming levels of the lamps' drivers. The array levels holds count factors for the emission, each finite
@@ -571,18 +566,16 @@ luxfer_status luxfer_importance_respond(luxfer_importance *importance,
                                         size_t size);
 
 /**
- * Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes (red, green,
- * blue) in cd/m², each in [0, 1e15]. This call uses the map; luxfer_relight solves the same problem by tracing new
- * paths. texture and placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
+ * Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes rgb in cd/m²,
+ * each channel in [0, 1e15]. This call uses the map; luxfer_relight solves the same problem by tracing new paths.
+ * texture and placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture reaches the target, or
- * the other lights alone exceed (red, green, blue).
+ * the other lights alone exceed rgb.
  */
 luxfer_status luxfer_importance_solve(luxfer_importance *importance,
                                       luxfer_image *texture,
                                       const double *placement,
-                                      float red,
-                                      float green,
-                                      float blue,
+                                      const float rgb[3],
                                       luxfer_relight_report *report,
                                       size_t size);
 
@@ -739,28 +732,26 @@ typedef struct luxfer_glare_report {
 } luxfer_glare_report;
 
 /**
- * Gets the correlated colour temperature of a linear RGB colour. *kelvin receives the temperature of the nearest
+ * Gets the correlated colour temperature of rgb, a linear colour. *kelvin receives the temperature of the nearest
  * blackbody, in [1000, 20000]; *duv receives the distance from this blackbody in the CIE 1960 diagram, positive for
  * greenish colours. Any thread.
  * LUXFER_DEGENERATE if the colour is black or not finite.
  */
 luxfer_status luxfer_colour_to_temperature(luxfer_context *context,
-                                           double red,
-                                           double green,
-                                           double blue,
+                                           const double rgb[3],
                                            double *kelvin,
                                            double *duv);
 
 /**
- * Computes the linear RGB colour, with luminance 1, of a colour temperature; rgb receives three numbers. kelvin is in
- * [1000, 20000]; duv, the distance from the blackbody in the CIE 1960 diagram, is in [-0.05, 0.05]. A channel is
- * negative if the colour is out of gamut. Any thread.
+ * Computes the linear colour, with luminance 1, of a colour temperature; rgb receives the colour. kelvin is in [1000,
+ * 20000]; duv, the distance from the blackbody in the CIE 1960 diagram, is in [-0.05, 0.05]. A channel is negative if
+ * the colour is out of gamut. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_temperature_to_colour(luxfer_context *context,
                                            double kelvin,
                                            double duv,
-                                           double *rgb);
+                                           double rgb[3]);
 
 /**
  * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). The image is the view of a
@@ -981,12 +972,14 @@ typedef struct luxfer_preset {
     double walls;
     /** Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement. */
     double ceiling;
+    /** The name, such as "office: filing, copying", in UTF-8; valid as long as the library is loaded. */
+    const char *name;
 } luxfer_preset;
 
 /**
- * Mixes a colour from the LEDs of a luminaire. colour holds linear RGB: three numbers that are finite and >= 0. The
- * array primaries holds three numbers for each of count LEDs: the linear RGB of the LED at drive level 1. These
- * numbers may be negative, because the colours of most LEDs lie outside the gamut of Rec.709. count is in [1, 64].
+ * Mixes rgb, a linear colour with channels that are finite and >= 0, from the LEDs of a luminaire. The array primaries
+ * holds three numbers for each of count LEDs: the linear RGB of the LED at drive level 1. These numbers may be
+ * negative, because the colours of most LEDs lie outside the gamut of Rec.709. count is in [1, 64].
  *
  * The array drives receives the drive levels of the count LEDs, each in [0, max_drive]; max_drive is >= 0 and may be
  * infinite. If no mixture has the colour, the result is the mixture with the smallest squared difference in linear
@@ -998,23 +991,23 @@ luxfer_status luxfer_mix_primaries(luxfer_context *context,
                                    const double *primaries,
                                    size_t count,
                                    double max_drive,
-                                   const double *colour,
+                                   const double rgb[3],
                                    double *drives,
                                    luxfer_mixture *mixture,
                                    size_t size);
 
 /**
  * Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
- * a wanted radiance, by least squares over the channels. Each array holds linear RGB: response is the mean radiance of
- * the target from a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is
- * the mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any
+ * a wanted radiance, by least squares over the channels. Each array is a linear colour: response is the mean radiance
+ * of the target from a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background
+ * is the mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any
  * thread.
  * LUXFER_UNREACHABLE if no channel of response is greater than 0, LUXFER_INVALID_ARGUMENT if a number is not finite.
  */
 luxfer_status luxfer_fit_temperature(luxfer_context *context,
-                                     const double *response,
-                                     const double *background,
-                                     const double *target,
+                                     const double response[3],
+                                     const double background[3],
+                                     const double target[3],
                                      luxfer_temperature_fit *fit,
                                      size_t size);
 
@@ -1029,18 +1022,6 @@ luxfer_status luxfer_preset_get(luxfer_context *context,
                                 uint32_t index,
                                 luxfer_preset *preset,
                                 size_t size);
-
-/**
- * Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
- * capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole name needs. Any
- * thread.
- * LUXFER_NOT_FOUND if index is beyond the last preset.
- */
-luxfer_status luxfer_preset_get_name(luxfer_context *context,
-                                     uint32_t index,
-                                     char *buffer,
-                                     size_t capacity,
-                                     size_t *needed);
 
 /* ==================================================================================================================
  * Pendants

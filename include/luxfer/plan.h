@@ -8,6 +8,8 @@
 #define LUXFER_PLAN_H
 
 #include "transfer.h"
+#include "stages.h"
+#include "render.h"
 #include "stylize.h"
 
 #ifdef __cplusplus

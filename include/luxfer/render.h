@@ -354,18 +354,12 @@ luxfer_status luxfer_render_get_layer_name(luxfer_render *render,
                                            size_t *needed);
 
 /**
- * Finds a layer by its name; *index receives its index. Any thread.
- * LUXFER_NOT_FOUND if no layer has that name.
- */
-luxfer_status luxfer_render_find_layer(luxfer_render *render, const char *name, uint32_t *index);
-
-/**
- * Gets a layer in its current state: light in cd/m² with 3 channels, or an AOV with its channels. The caller releases
- * *image. Any thread.
- * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
+ * Gets the layer with a name, in its current state: light in cd/m² with 3 channels, or an AOV with its channels. The
+ * caller releases *image. Any thread.
+ * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if no layer has that name.
  */
 luxfer_status luxfer_render_get_layer(luxfer_render *render,
-                                      uint32_t index,
+                                      const char *name,
                                       luxfer_image **image);
 
 /**

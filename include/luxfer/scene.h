@@ -108,29 +108,16 @@ luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
 
 /**
  * Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
- * the radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise
- * the radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image
- * is towards -z, its top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn
- * in proportion to the brightness of the image. The image is copied. Any thread.
+ * the radiance of the environment is rgb in cd/m², each channel in [0, 1e15], from every direction. Otherwise the
+ * radiance is an equirectangular image in linear values, multiplied by rgb. The centre of the image is towards -z, its
+ * top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn in proportion to
+ * the brightness of the image. The image is copied. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
 luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
                                            luxfer_image *image,
-                                           float red,
-                                           float green,
-                                           float blue);
-
-/**
- * Sets the emission of a material: red, green and blue in cd/m², each in [0, 1e15]. The material's emission texture,
- * if any, is multiplied by them. Any thread.
- * LUXFER_NOT_FOUND if there is no such material.
- */
-luxfer_status luxfer_scene_set_emission(luxfer_scene *scene,
-                                        uint32_t material,
-                                        float red,
-                                        float green,
-                                        float blue);
+                                           const float rgb[3]);
 
 /**
  * Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
@@ -148,17 +135,15 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
 /**
  * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
  * luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material. On the
- * side towards the room, this copy emits texture * (red, green, blue) in cd/m², each factor in [0, 1e15]. *mesh and
- * *material receive the indices of the new mesh and material; each pointer may be NULL. Any thread.
+ * side towards the room, this copy emits texture * rgb in cd/m², each factor in [0, 1e15]. *mesh and *material receive
+ * the indices of the new mesh and material; each pointer may be NULL. Any thread.
  * Errors: those of luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
  * LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */
 luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
                                           const char *name,
                                           luxfer_image *texture,
-                                          float red,
-                                          float green,
-                                          float blue,
+                                          const float rgb[3],
                                           uint32_t *mesh,
                                           uint32_t *material);
 

@@ -153,7 +153,10 @@ typedef struct luxfer_rectify_report {
     uint32_t is_unwarped;
     /** Reserved; always 0. */
     uint32_t reserved;
-    /** Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. */
+    /**
+     * Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp unwarps
+     * other images of the photo's size, such as the confidence of the lights.
+     */
     double to_photo[9];
     /** Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise. */
     double corners[4][2];
@@ -284,16 +287,6 @@ luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
                                        luxfer_image **image);
 
 /**
- * Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
- * pixels outside the photo become 0. The call is synchronous and takes a few milliseconds per megapixel. The caller
- * releases *warped. Any thread.
- * LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
- */
-luxfer_status luxfer_rectify_warp(luxfer_rectify *rectify,
-                                  luxfer_image *source,
-                                  luxfer_image **warped);
-
-/**
  * Gets the camera and the unwarping, with their errors. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
@@ -312,9 +305,6 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
 
 /** The features of a photo. See luxfer_features_create. */
 typedef struct luxfer_features luxfer_features;
-
-/** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
-typedef int32_t luxfer_depth_kind;
 
 /**
  * How a network expects the photo's colours, which are sRGB in [0, 1]: a LUXFER_NORMALISATION_ value. An ONNX file
@@ -370,12 +360,6 @@ typedef struct luxfer_features_report {
     uint64_t replaced_pixels;
 } luxfer_features_report;
 
-/** Distance along the viewing axis. */
-#define LUXFER_DEPTH_ALONG_Z 0
-
-/** Distance along the ray of each pixel. */
-#define LUXFER_DEPTH_ALONG_RAY 1
-
 /**
  * The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y, z, towards
  * the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the viewing axis, near is
@@ -427,11 +411,7 @@ luxfer_status luxfer_features_create(luxfer_context *context, luxfer_features **
 /** Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread. */
 luxfer_status luxfer_features_set_photo(luxfer_features *features, luxfer_image *photo);
 
-/**
- * Sets a depth map of the photo's size, 1 channel, in any unit. Pixels whose value is not positive and finite are
- * holes, which are filled from their surroundings. kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map.
- * Any thread.
- */
+/** Sets a depth map of the photo; kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread. */
 luxfer_status luxfer_features_set_depth(luxfer_features *features,
                                         luxfer_image *depth,
                                         luxfer_depth_kind kind);
@@ -1216,25 +1196,21 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
                                        uint32_t mesh);
 
 /**
- * Sets the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
+ * Sets rgb, the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
  * LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
  */
 luxfer_status luxfer_relight_set_target(luxfer_relight *relight,
-                                        float red,
-                                        float green,
-                                        float blue);
+                                        const float rgb[3]);
 
 /**
- * Makes the target a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three
- * channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
- * scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the
- * limit. Any thread.
+ * Makes the target a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green,
+ * blue. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
+ * scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the limit.
+ * Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
  */
 luxfer_status luxfer_relight_set_constraint(luxfer_relight *relight,
-                                            luxfer_constraint red,
-                                            luxfer_constraint green,
-                                            luxfer_constraint blue);
+                                            const luxfer_constraint constraint[3]);
 
 /**
  * Starts a job that solves for the factor by which to multiply the emission. params may be NULL for the defaults. The

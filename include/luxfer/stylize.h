@@ -141,9 +141,6 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
  * Renderings". The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
  * ================================================================================================================== */
 
-/** How exemplar patches are assigned to target patches: a LUXFER_STYLIZE_MODE_ value. */
-typedef int32_t luxfer_stylize_mode;
-
 /** The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
 typedef int32_t luxfer_stylize_search;
 
@@ -157,8 +154,6 @@ typedef int32_t luxfer_stylize_vote;
 typedef struct luxfer_stylize_params {
     /** sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init. */
     uint32_t struct_size;
-    /** Assignment of patches: a LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET. */
-    luxfer_stylize_mode mode;
     /** Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH. */
     luxfer_stylize_search search;
     /**
@@ -171,18 +166,26 @@ typedef struct luxfer_stylize_params {
      */
     float guide_weight;
     /**
+     * Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
+     * factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
+     */
+    float coarse_guides;
+    /**
      * Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16]; default 6.
      * The coarsest level is at least 5 patches wide and high.
      */
     uint32_t levels;
     /** Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting. */
     uint32_t iterations;
+    /**
+     * Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
+     */
+    uint32_t coarse_iterations;
     /** Rounds (EM iterations) on the finest level, in [1, 100]; default 1. */
     uint32_t finest_iterations;
     /**
-     * Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
-     * LUXFER_STYLIZE_MODE_BUDGET each target patch takes its nearest match in these rounds, without the error budget.
-     * In other modes these are additional rounds of that mode.
+     * Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In these rounds
+     * each target patch takes its nearest match, without the error budget.
      */
     uint32_t polish;
     /** Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1. */
@@ -237,27 +240,10 @@ typedef struct luxfer_stylize_params {
      * light guides, in [0, 1]; 0, the default: not at all.
      */
     float match_appearance;
-    /** Seed of the search; default 1. */
-    uint64_t seed;
-    /**
-     * Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
-     * factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
-     */
-    float coarse_guides;
-    /**
-     * Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
-     */
-    uint32_t coarse_iterations;
-    /**
-     * Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
-     * with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. 2016 chose for their
-     * picture of this method (their Fig. 10n). The penalty is added to the distance of a match (their Eq. 1), which is
-     * the weighted sum of squared differences over the pixels of a patch, with channels in [0, 1]. A patch that is
-     * used as often as the average has the penalty lambda.
-     */
-    float occurrence;
     /** Must be 0. */
     uint32_t reserved;
+    /** Seed of the search; default 1. */
+    uint64_t seed;
 } luxfer_stylize_params;
 
 /** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
@@ -279,33 +265,6 @@ typedef int32_t luxfer_stylize_preset;
 
 /** The settings of the paper, for comparison. */
 #define LUXFER_STYLIZE_PAPER 3
-
-/** Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the default. */
-#define LUXFER_STYLIZE_MODE_BUDGET 0
-
-/** Every exemplar patch is used equally often (Jamriska et al. 2015). */
-#define LUXFER_STYLIZE_MODE_UNIFORM 1
-
-/** Each target patch takes its nearest exemplar patch (Wexler et al. 2007). */
-#define LUXFER_STYLIZE_MODE_NEAREST 2
-
-/**
- * One pass in scan order, in which each pixel takes its nearest match or continues the match of a neighbour (Hertzmann
- * et al. 2001); runs on one thread.
- */
-#define LUXFER_STYLIZE_MODE_GREEDY 3
-
-/**
- * Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan
- * et al. 2001).
- */
-#define LUXFER_STYLIZE_MODE_LIT_SPHERE 4
-
-/**
- * Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar et al.
- * 2015): see the field occurrence. Runs on one thread, and with LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
- */
-#define LUXFER_STYLIZE_MODE_OCCURRENCE 5
 
 /** PatchMatch (Barnes et al. 2009), the default. */
 #define LUXFER_STYLIZE_SEARCH_PATCHMATCH 0
@@ -523,8 +482,7 @@ luxfer_status luxfer_stylize_set_painted(luxfer_stylize *stylize,
 /* ==================================================================================================================
  * Results of a stylisation
  *
- * The picture, the place in the artwork from which each pixel was painted, the error of the guides, and statistics of
- * the run level by level.
+ * The picture, the place in the artwork from which each pixel was painted, and the error of the guides.
  * ================================================================================================================== */
 
 /** An image of a stylisation: a LUXFER_STYLIZE_IMAGE_ value. */
@@ -539,7 +497,7 @@ typedef struct luxfer_stylize_report {
      * are 0.
      */
     uint32_t is_complete;
-    /** Number of finished levels; see luxfer_stylize_get_level. */
+    /** Number of finished resolution levels. */
     uint32_t levels;
     /** Number of times that the target's sides were halved to get the size of the picture. */
     uint32_t halvings;
@@ -569,36 +527,6 @@ typedef struct luxfer_stylize_report {
      */
     double unblended_share;
 } luxfer_stylize_report;
-
-/** One round (EM iteration) on a level: matching, then voting. */
-typedef struct luxfer_stylize_round {
-    /** sizeof(luxfer_stylize_round), set by the function that fills the struct. */
-    uint32_t struct_size;
-    /** Number of matching passes under the error budget; see luxfer_stylize_get_pass. */
-    uint32_t passes;
-    /**
-     * Energy after this round, as luxfer_stylize_report.energy. On all levels but the finest, all guides together have
-     * the weight guide_weight * coarse_guides.
-     */
-    double energy;
-} luxfer_stylize_round;
-
-/** One matching pass under the error budget, in LUXFER_STYLIZE_MODE_BUDGET. */
-typedef struct luxfer_stylize_pass {
-    /** sizeof(luxfer_stylize_pass), set by the function that fills the struct. */
-    uint32_t struct_size;
-    /** Reserved; always 0. */
-    uint32_t reserved;
-    /**
-     * Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which the
-     * sorted errors begin to rise steeply. The sum of the errors before the knee is the error budget.
-     */
-    double knee;
-    /** Share of the target with a match after this pass, in [0, 1]. */
-    double coverage;
-    /** Number of target patches that received a match in this pass. */
-    uint64_t new_matches;
-} luxfer_stylize_pass;
 
 /**
  * The stylised target, linear, with the artwork's channels. Before the last level, in preview and after a cancel it
@@ -636,40 +564,6 @@ luxfer_status luxfer_stylize_get_image(luxfer_stylize *stylize,
 luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize,
                                         luxfer_stylize_report *report,
                                         size_t size);
-
-/**
- * Gets the size of a level in pixels and the number of its rounds; level 0 is the coarsest. width, height and rounds
- * may be NULL. Any thread.
- * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level.
- */
-luxfer_status luxfer_stylize_get_level(luxfer_stylize *stylize,
-                                       uint32_t level,
-                                       uint32_t *width,
-                                       uint32_t *height,
-                                       uint32_t *rounds);
-
-/**
- * Describes a round (EM iteration) of a level; level and index are numbers from 0. size is sizeof *round. Any thread.
- * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
- */
-luxfer_status luxfer_stylize_get_round(luxfer_stylize *stylize,
-                                       uint32_t level,
-                                       uint32_t index,
-                                       luxfer_stylize_round *round,
-                                       size_t size);
-
-/**
- * Describes a matching pass of a round (EM iteration); level, round and index are numbers from 0. size is sizeof
- * *pass. Any thread.
- * LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
- * pass.
- */
-luxfer_status luxfer_stylize_get_pass(luxfer_stylize *stylize,
-                                      uint32_t level,
-                                      uint32_t round,
-                                      uint32_t index,
-                                      luxfer_stylize_pass *pass,
-                                      size_t size);
 
 /* ==================================================================================================================
  * Print sheets

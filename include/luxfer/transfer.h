@@ -7,12 +7,24 @@
 #ifndef LUXFER_TRANSFER_H
 #define LUXFER_TRANSFER_H
 
-#include "render.h"
-#include "stages.h"
+#include "scene.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Structs of parts that this part does not include. */
+struct luxfer_emission_params;
+struct luxfer_features;
+struct luxfer_features_params;
+struct luxfer_rectify;
+struct luxfer_rectify_params;
+struct luxfer_rectify_report;
+struct luxfer_relight_params;
+struct luxfer_relight_report;
+struct luxfer_render_params;
+struct luxfer_segment;
+struct luxfer_segment_params;
 
 /* ==================================================================================================================
  * Pattern
@@ -93,6 +105,9 @@ static inline luxfer_status luxfer_pattern_params_init(luxfer_pattern_params *pl
  * The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes. It runs its
  * stages one after the other. You can read every result as soon as its stage has ended, replace it by a result of
  * your own, and continue from any stage.
+ *
+ * stages.h and render.h declare the structs of single stages. Include them, or luxfer.h, to change the settings of a
+ * stage (luxfer_transfer_params), to read luxfer_rectify_report or luxfer_relight_report, or to run a stage alone.
  * ================================================================================================================== */
 
 /** A lighting transfer. See luxfer_transfer_create. */
@@ -128,25 +143,25 @@ typedef struct luxfer_transfer_params {
     /** Part of the photo whose mean colour is matched: a LUXFER_TARGET_ value; default LUXFER_TARGET_SURFACE. */
     luxfer_target target;
     /** Settings of the stages VIEW and UNWARP; NULL, the default: the defaults of luxfer_rectify_params. */
-    const luxfer_rectify_params *rectify;
+    const struct luxfer_rectify_params *rectify;
     /** Settings of the stage FEATURES; NULL, the default: the defaults of luxfer_features_params. */
-    const luxfer_features_params *features;
+    const struct luxfer_features_params *features;
     /** Settings of the stage PLANE; NULL, the default: the defaults of luxfer_segment_params. */
-    const luxfer_segment_params *plane;
+    const struct luxfer_segment_params *plane;
     /**
      * Settings of the stage LIGHTS; NULL, the default: the defaults of luxfer_segment_params, but channels = 7,
      * colour only.
      */
-    const luxfer_segment_params *lights;
+    const struct luxfer_segment_params *lights;
     /**
      * Settings of the stage EMISSION; NULL, the default: the defaults of luxfer_emission_params. The transfer sets
      * width, height, scale and offset itself.
      */
-    const luxfer_emission_params *emission;
+    const struct luxfer_emission_params *emission;
     /** Settings of the stage RELIGHT; NULL, the default: the defaults of luxfer_relight_params. */
-    const luxfer_relight_params *relight;
+    const struct luxfer_relight_params *relight;
     /** Settings of the stage RENDER; NULL, the default: the defaults of luxfer_render_params. */
-    const luxfer_render_params *render;
+    const struct luxfer_render_params *render;
     /** Layout of the lights on the surface; NULL, the default: the defaults of luxfer_pattern_params. */
     const luxfer_pattern_params *pattern;
 } luxfer_transfer_params;
@@ -198,10 +213,7 @@ luxfer_status luxfer_transfer_create(luxfer_context *context, luxfer_transfer **
 /** Sets the photo: linear RGB, 1 = display white. Strokes for a photo of another size are removed. Any thread. */
 luxfer_status luxfer_transfer_set_photo(luxfer_transfer *transfer, luxfer_image *photo);
 
-/**
- * Sets a depth map of the photo; depth and kind are as for luxfer_features_set_depth. depth may be NULL: no depth
- * map. Any thread.
- */
+/** Sets a depth map of the photo; kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread. */
 luxfer_status luxfer_transfer_set_depth(luxfer_transfer *transfer,
                                         luxfer_image *depth,
                                         luxfer_depth_kind kind);
@@ -270,13 +282,13 @@ luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
  * LUXFER_NOT_READY if rectify has no result yet.
  */
 luxfer_status luxfer_transfer_use_rectify(luxfer_transfer *transfer,
-                                          luxfer_rectify *rectify);
+                                          struct luxfer_rectify *rectify);
 
 /**
  * Replaces the result of the stage FEATURES by the result of a luxfer_features. Any thread.
  * LUXFER_NOT_READY if features has no result yet.
  */
-luxfer_status luxfer_transfer_use_features(luxfer_transfer *transfer, luxfer_features *features);
+luxfer_status luxfer_transfer_use_features(luxfer_transfer *transfer, struct luxfer_features *features);
 
 /**
  * Replaces the result of the stage PLANE or LIGHTS by the result of a luxfer_segment; phase, a LUXFER_PHASE_ value,
@@ -285,7 +297,7 @@ luxfer_status luxfer_transfer_use_features(luxfer_transfer *transfer, luxfer_fea
  */
 luxfer_status luxfer_transfer_use_segment(luxfer_transfer *transfer,
                                           luxfer_phase phase,
-                                          luxfer_segment *segment);
+                                          struct luxfer_segment *segment);
 
 /**
  * Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size, for example a mask drawn by hand;
@@ -509,7 +521,7 @@ luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer,
  * LUXFER_NOT_READY before the stage VIEW has ended.
  */
 luxfer_status luxfer_transfer_get_view(luxfer_transfer *transfer,
-                                       luxfer_rectify_report *view,
+                                       struct luxfer_rectify_report *view,
                                        size_t size);
 
 /**
@@ -517,7 +529,7 @@ luxfer_status luxfer_transfer_get_view(luxfer_transfer *transfer,
  * LUXFER_NOT_READY before the stage RELIGHT has ended.
  */
 luxfer_status luxfer_transfer_get_solution(luxfer_transfer *transfer,
-                                           luxfer_relight_report *solution,
+                                           struct luxfer_relight_report *solution,
                                            size_t size);
 
 /**

@@ -4,7 +4,7 @@ use super::agreement::statistics;
 use super::analysis::Analysis;
 use super::compose::layer::outlines;
 use super::exemplar::components::Component;
-use super::lamps::design::Designs;
+use super::lamps::designs::Designs;
 use super::lattice::law::Law;
 use super::params::{Input, Params};
 use crate::error::Result;

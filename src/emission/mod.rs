@@ -74,7 +74,7 @@ use compose::layer::Layer;
 use compose::render;
 use exemplar::Exemplar;
 use exemplar::components::{Component, Components};
-use exemplar::{bars, panes};
+use exemplar::{bars, joins, panes};
 use glam::Vec3;
 use lamps::luminaires;
 use quilt::patch_map::PatchMap;
@@ -144,11 +144,14 @@ pub fn blend_measured(
     make(composition, input, styles, params, job)
 }
 
-/// Removes the bars between the panes of a luminous ceiling from the unwarped light mask, so that each pane becomes a
-/// lamp. Returns the mask unchanged if there are no such bars.
-pub fn part_panes(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography, job: Job) -> Result<Image> {
+/// Makes each lamp of the unwarped light mask one piece: removes the bars between the panes of a luminous ceiling, so
+/// that each pane becomes a lamp, and joins the parts of lamps that the mask separates. Returns the mask unchanged if
+/// there is nothing to part or to join.
+pub fn complete_lights(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography, job: Job) -> Result<Image> {
     let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
-    Ok(panes::part(&plane, job)?.unwrap_or(light))
+    let parted = panes::part(&plane, job)?;
+    let completed = if parted.is_some() { parted } else { joins::join(&plane, job)? };
+    Ok(completed.unwrap_or(light))
 }
 
 fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {

@@ -8,7 +8,7 @@ use super::context::luxfer_context;
 use super::geometry::{list, numbers};
 use super::guard::enter;
 use super::params::{Report, Versioned, versioned};
-use super::pointer::{Out, bytes_mut, copy_text};
+use super::pointer::{Out, bytes_mut};
 use super::scene::missing;
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
@@ -80,29 +80,33 @@ pub struct luxfer_preset {
     pub walls: f64,
     /// Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement.
     pub ceiling: f64,
+    /// The name, such as "office: filing, copying", in UTF-8; valid as long as the library is loaded.
+    pub name: *const c_char,
 }
 
-versioned!(luxfer_preset, [56], {
+versioned!(luxfer_preset, [64], {
     let (illuminance, glare, uniformity, rendering) = (0.0, 0.0, 0.0, 0.0);
-    Self { struct_size: 56, edition: 0, illuminance, glare, uniformity, rendering, walls: 0.0, ceiling: 0.0 }
+    let name = std::ptr::null();
+    Self { struct_size: 64, edition: 0, illuminance, glare, uniformity, rendering, walls: 0.0, ceiling: 0.0, name }
 });
 
-/// Mixes a colour from the LEDs of a luminaire. colour holds linear RGB: three numbers that are finite and >= 0. The
-/// array primaries holds three numbers for each of count LEDs: the linear RGB of the LED at drive level 1. These
-/// numbers may be negative, because the colours of most LEDs lie outside the gamut of Rec.709. count is in [1, 64].
+/// Mixes rgb, a linear colour with channels that are finite and >= 0, from the LEDs of a luminaire. The array primaries
+/// holds three numbers for each of count LEDs: the linear RGB of the LED at drive level 1. These numbers may be
+/// negative, because the colours of most LEDs lie outside the gamut of Rec.709. count is in [1, 64].
 ///
 /// The array drives receives the drive levels of the count LEDs, each in [0, max_drive]; max_drive is >= 0 and may be
 /// infinite. If no mixture has the colour, the result is the mixture with the smallest squared difference in linear
 /// RGB. If several mixtures have the colour, the result is the one with the smallest sum of squared drive levels. size
 /// is sizeof *mixture. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_mix_primaries(
     context: *mut luxfer_context,
     primaries: *const f64,
     count: usize,
     max_drive: f64,
-    colour: *const f64,
+    rgb: *const f64,
     drives: *mut f64,
     mixture: *mut luxfer_mixture,
     size: usize,
@@ -113,7 +117,7 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
         let primaries = list(primaries, 3 * count, "primaries")?;
         let primaries: Vec<DVec3> = primaries.chunks_exact(3).map(DVec3::from_slice).collect();
         let places = bytes_mut(drives.cast(), count * size_of::<f64>(), "drives")?;
-        let mixed = mix_primaries(&primaries, max_drive, DVec3::from_array(numbers(colour, "colour")?))?;
+        let mixed = mix_primaries(&primaries, max_drive, DVec3::from_array(numbers(rgb, "rgb")?))?;
         for (place, drive) in places.chunks_exact_mut(size_of::<f64>()).zip(mixed.drives) {
             place.copy_from_slice(&drive.to_ne_bytes());
         }
@@ -128,11 +132,12 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
 }
 
 /// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
-/// a wanted radiance, by least squares over the channels. Each array holds linear RGB: response is the mean radiance of
-/// the target from a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background is
-/// the mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any
+/// a wanted radiance, by least squares over the channels. Each array is a linear colour: response is the mean radiance
+/// of the target from a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background
+/// is the mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any
 /// thread.
 /// LUXFER_UNREACHABLE if no channel of response is greater than 0, LUXFER_INVALID_ARGUMENT if a number is not finite.
+/// cbindgen:ptrs-as-arrays=[[response; 3], [background; 3], [target; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_fit_temperature(
     context: *mut luxfer_context,
@@ -197,25 +202,11 @@ pub unsafe extern "C" fn luxfer_preset_get(
             rendering: p.rendering,
             walls: p.walls,
             ceiling: p.ceiling,
+            name: p.name.as_ptr(),
             ..luxfer_preset::defaults()
         });
         Ok(())
     })
-}
-
-/// Copies the name of a preset, such as "office: filing, copying", into buffer as zero-terminated text, truncated to
-/// capacity bytes including the zero. *needed, unless NULL, receives the capacity that the whole name needs. Any
-/// thread.
-/// LUXFER_NOT_FOUND if index is beyond the last preset.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_preset_get_name(
-    context: *mut luxfer_context,
-    index: u32,
-    buffer: *mut c_char,
-    capacity: usize,
-    needed: *mut usize,
-) -> luxfer_status {
-    enter(context, |_| copy_text(find(index)?.name, buffer, capacity, needed))
 }
 
 fn find(index: u32) -> Result<&'static Preset> {

@@ -6,6 +6,7 @@
 //! strokes on one plane of the room; (4) a fixed default that does not depend on the photo.
 
 use super::context::luxfer_context;
+use super::depth::{depth_kind, luxfer_depth_kind};
 use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
@@ -38,13 +39,6 @@ enum DepthNetwork {}
 pub struct luxfer_features {
     _opaque: [u8; 0],
 }
-
-/// Quantity that a depth map measures: a LUXFER_DEPTH_ value.
-pub type luxfer_depth_kind = i32;
-/// Distance along the viewing axis.
-pub const LUXFER_DEPTH_ALONG_Z: luxfer_depth_kind = 0;
-/// Distance along the ray of each pixel.
-pub const LUXFER_DEPTH_ALONG_RAY: luxfer_depth_kind = 1;
 
 /// An image of the features: a LUXFER_FEATURES_ value.
 pub type luxfer_features_image = i32;
@@ -153,14 +147,6 @@ impl Handle for luxfer_features {
     const NAME: &'static str = "luxfer_features";
 }
 
-pub(super) fn depth_kind(value: luxfer_depth_kind) -> Result<DepthKind> {
-    match value {
-        LUXFER_DEPTH_ALONG_Z => Ok(DepthKind::AlongZ),
-        LUXFER_DEPTH_ALONG_RAY => Ok(DepthKind::AlongRay),
-        other => Err(Error::argument(format!("depth kind is {other}; it must be a LUXFER_DEPTH_ value"))),
-    }
-}
-
 /// Creates an object that computes features. It has no inputs yet. The caller releases *features. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_create(
@@ -189,9 +175,7 @@ pub unsafe extern "C" fn luxfer_features_set_photo(
     })
 }
 
-/// Sets a depth map of the photo's size, 1 channel, in any unit. Pixels whose value is not positive and finite are
-/// holes, which are filled from their surroundings. kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map.
-/// Any thread.
+/// Sets a depth map of the photo; kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_depth(
     features: *mut luxfer_features,

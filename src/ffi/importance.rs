@@ -13,7 +13,7 @@ use super::job::luxfer_job;
 use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::relight::{Emitter, LUXFER_QUANTITY_OUTGOING, luxfer_quantity, luxfer_relight_report, quantity};
-use super::scene::{colour, luxfer_scene};
+use super::scene::{luxfer_scene, read_colour};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
@@ -227,25 +227,24 @@ pub unsafe extern "C" fn luxfer_importance_respond(
     })
 }
 
-/// Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes (red, green,
-/// blue) in cd/m², each in [0, 1e15]. This call uses the map; luxfer_relight solves the same problem by tracing new
-/// paths. texture and placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
+/// Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes rgb in cd/m²,
+/// each channel in [0, 1e15]. This call uses the map; luxfer_relight solves the same problem by tracing new paths.
+/// texture and placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture reaches the target, or
-/// the other lights alone exceed (red, green, blue).
+/// the other lights alone exceed rgb.
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_importance_solve(
     importance: *mut luxfer_importance,
     texture: *mut luxfer_image,
     placement: *const f64,
-    red: f32,
-    green: f32,
-    blue: f32,
+    rgb: *const f32,
     report: *mut luxfer_relight_report,
     size: usize,
 ) -> luxfer_status {
     enter(importance, |stage| {
         let out = Report::new(report, size)?;
-        let target = colour("target", red, green, blue)?;
+        let target = read_colour(rgb)?;
         let (map, response) = respond(stage, texture, placement)?;
         out.set(luxfer_relight_report::new(&map.solve(&response, target)?));
         Ok(())

@@ -13,7 +13,7 @@
 use super::context::Context;
 use super::guard::{catch, enter, lock};
 use super::handle::{Handle, Owned, tag};
-use super::pointer::set_optional;
+use super::pointer::Out;
 use super::status::{LUXFER_NOT_READY, LUXFER_OK, luxfer_status};
 use crate::error::{Error, ErrorKind, Result};
 use crate::exec::spawn;
@@ -106,10 +106,6 @@ impl Job {
         let waited = self.shared.finished.wait_timeout_while(result, time, |r| r.is_none());
         waited.unwrap_or_else(|poisoned| poisoned.into_inner()).0.clone()
     }
-
-    fn is_running() -> Error {
-        Error::new(ErrorKind::NotReady, "the job is still running; wait for it with luxfer_job_wait")
-    }
 }
 
 impl Drop for Job {
@@ -125,27 +121,30 @@ impl Drop for Job {
     }
 }
 
-/// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit.
-/// During the wait, the call passes the progress and the pointer user to the function progress, which may be NULL. Any
-/// thread; several threads may wait for one job.
+/// Waits until a job has ended or timeout_ms milliseconds have passed; a negative timeout_ms waits without limit, and 0
+/// does not wait. During the wait, the call passes the progress and the pointer user to the function progress, which
+/// may be NULL. Any thread; several threads may wait for one job.
 ///
-/// Returns LUXFER_OK if the job has succeeded, else the job's error status; the job's error message becomes the message
-/// of this call. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other
-/// job also cancels this job.
-/// LUXFER_CANCELLED if a cancel request came in time; LUXFER_NOT_READY if the wait timed out (the job continues);
-/// LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
+/// *outcome receives the status of the work: LUXFER_OK if the job has succeeded, LUXFER_CANCELLED if a cancel request
+/// came in time, LUXFER_NOT_READY if the job still runs, and otherwise the error with which the job has ended. For an
+/// error, luxfer_context_get_last_error then gives the message of the job. The call itself returns LUXFER_OK whatever
+/// the outcome. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other job
+/// also cancels this job.
+/// LUXFER_INVALID_ARGUMENT if outcome is NULL; LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_wait(
     job: *mut luxfer_job,
     timeout_ms: i32,
     progress: luxfer_progress_fn,
     user: *mut c_void,
+    outcome: *mut luxfer_status,
 ) -> luxfer_status {
     enter(job, |job| {
+        let out = Out::new(outcome, "outcome")?;
         let deadline = u64::try_from(timeout_ms).ok().map(|ms| Instant::now() + Duration::from_millis(ms));
         let mut progress = progress;
         let caller = job.context.calling_job();
-        if caller.as_ref().is_some_and(|caller| Arc::ptr_eq(caller, &job.shared.monitor)) {
+        if timeout_ms != 0 && caller.as_ref().is_some_and(|caller| Arc::ptr_eq(caller, &job.shared.monitor)) {
             return Err(Error::new(ErrorKind::InvalidOperation, "the function of a job cannot wait for its own job"));
         }
         loop {
@@ -176,36 +175,27 @@ pub unsafe extern "C" fn luxfer_job_wait(
             // The progress function may have forked the process: in the child there is no job to wait for.
             job.context.check_process()?;
             match result {
-                Some(result) => return result,
-                None if deadline.is_some_and(|d| Instant::now() >= d) => return Err(Job::is_running()),
-                None => {}
+                Some(Ok(())) => out.set(LUXFER_OK),
+                Some(Err(error)) => {
+                    job.context.remember(&error);
+                    out.set(error.kind as luxfer_status);
+                }
+                None if deadline.is_some_and(|d| Instant::now() >= d) => out.set(LUXFER_NOT_READY),
+                None => continue,
             }
+            return Ok(());
         }
     })
 }
 
-/// Gets the progress and the outcome of a job without waiting. *fraction receives the progress in [0, 1], which is 1
-/// only after success. *outcome receives the status with which the job has ended, as luxfer_job_wait returns it, or
-/// LUXFER_NOT_READY while the job runs. The call itself succeeds whatever the outcome. Either pointer may be NULL. Any
-/// thread.
+/// Gets the progress of a job without waiting, in [0, 1]; it is 1 only after success. The call succeeds whether the job
+/// runs, has succeeded or has failed; luxfer_job_wait says which. Any thread.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_job_get_progress(
-    job: *mut luxfer_job,
-    fraction: *mut f64,
-    outcome: *mut luxfer_status,
-) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_job_get_progress(job: *mut luxfer_job, fraction: *mut f64) -> luxfer_status {
     enter(job, |job| {
-        let result = job.wait(Duration::ZERO);
-        let progress = job.shared.monitor.progress();
-        set_optional(fraction, if matches!(result, Some(Ok(()))) { 1.0 } else { progress.min(1.0 - f64::EPSILON) });
-        set_optional(
-            outcome,
-            match result {
-                None => LUXFER_NOT_READY,
-                Some(Ok(())) => LUXFER_OK,
-                Some(Err(error)) => error.kind as luxfer_status,
-            },
-        );
+        let out = Out::new(fraction, "fraction")?;
+        let progress = job.shared.monitor.progress().min(1.0 - f64::EPSILON);
+        out.set(if matches!(job.wait(Duration::ZERO), Some(Ok(()))) { 1.0 } else { progress });
         Ok(())
     })
 }

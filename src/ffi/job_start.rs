@@ -35,8 +35,9 @@ unsafe impl Send for User {}
 /// this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture.
 ///
 /// If the function returns an error, the job ends with this error. The message of the job is that of the last call that
-/// failed on the job's thread. The error LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because
-/// luxfer_job_wait returns LUXFER_NOT_READY for a job that still runs.
+/// failed on the job's thread, or of the last job that failed while the function waited for it. The error
+/// LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that
+/// still runs.
 /// LUXFER_INVALID_ARGUMENT if work is NULL.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_job_start(
@@ -70,7 +71,7 @@ pub unsafe extern "C" fn luxfer_job_start(
 /// Makes the error of a job from the status that the caller's function has returned.
 fn error(context: &Context, status: luxfer_status) -> Error {
     let kind = match ErrorKind::from_value(status).unwrap_or(ErrorKind::Unknown) {
-        // luxfer_job_wait returns this status when it times out, so a caller would wait for ever.
+        // This status is the outcome of a job that still runs, so a caller would wait for ever.
         ErrorKind::NotReady => ErrorKind::InvalidOperation,
         kind => kind,
     };

@@ -9,29 +9,27 @@ use super::illuminance::luxfer_illuminance_grid;
 use super::lamp_goal::{StoredGeometry, StoredGoal};
 use super::lamps::{Inputs, Output, luxfer_lamps};
 use super::params;
-use super::relight::{constraint, luxfer_constraint, luxfer_quantity, quantity};
-use super::scene::{colour, missing};
+use super::relight::{luxfer_constraint, luxfer_quantity, quantity, read_constraints};
+use super::scene::{colour, missing, read_colour};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::relight::{Aspect, Constraint, MAX_LEVELS, MAX_WEIGHT, Quantity};
 
-/// Adds a goal: (red, green, blue) is the mean radiance that a mesh should have, in cd/m² per channel, each in [0,
-/// 1e15]. quantity is a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other
-/// goals. Any thread.
+/// Adds a goal: rgb is the mean radiance that a mesh should have, in cd/m² per channel, each in [0, 1e15]. quantity is
+/// a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other goals. Any thread.
 /// LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_add_mesh(
     lamps: *mut luxfer_lamps,
     mesh: u32,
     quantity: luxfer_quantity,
-    red: f32,
-    green: f32,
-    blue: f32,
+    rgb: *const f32,
     weight: f64,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let (quantity, target) = (self::quantity(quantity)?, colour("target", red, green, blue)?);
+        let (quantity, target) = (self::quantity(quantity)?, read_colour(rgb)?);
         let constraint = [Constraint::Exactly; 3];
         add(
             stage,
@@ -59,7 +57,7 @@ pub unsafe extern "C" fn luxfer_lamps_add_grid(
 ) -> luxfer_status {
     enter(lamps, |stage| {
         let [origin, across, down, normal] = params::read(grid)?.vectors()?;
-        let target = colour("lux", lux, lux, lux)? / std::f32::consts::PI;
+        let target = colour("lux", [lux; 3])? / std::f32::consts::PI;
         let geometry = StoredGeometry::Grid { origin, across, down, normal };
         let (quantity, constraint) = (Quantity::Incident, [Constraint::Exactly; 3]);
         add(stage, StoredGoal { geometry, quantity, target, aspect: Aspect::Luminance, constraint, weight })
@@ -81,20 +79,19 @@ fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
     })
 }
 
-/// Makes a goal a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three channels.
+/// Makes a goal a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green, blue.
 /// For a goal in lux, the three values must be equal. The parameter goal is the number of the goal: goals are numbered
 /// from 0 in the order in which they were added. Without this call a goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
 /// LUXFER_NOT_FOUND if there is no such goal.
+/// cbindgen:ptrs-as-arrays=[[constraint; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_constraint(
     lamps: *mut luxfer_lamps,
     goal: u32,
-    red: luxfer_constraint,
-    green: luxfer_constraint,
-    blue: luxfer_constraint,
+    constraint: *const luxfer_constraint,
 ) -> luxfer_status {
     enter(lamps, |stage| {
-        let constraints = [constraint(red)?, constraint(green)?, constraint(blue)?];
+        let constraints = read_constraints(constraint)?;
         stage.change(|inputs| {
             let count = inputs.goals.len();
             let stored = inputs.goals.get_mut(goal as usize).ok_or_else(|| missing("goal", goal, count))?;

@@ -4,6 +4,7 @@
 //! These calls are synchronous: they do their work before they return.
 
 use super::context::luxfer_context;
+use super::geometry::numbers;
 use super::guard::enter;
 use super::image::luxfer_image;
 use super::params::{Report, Versioned, versioned};
@@ -54,21 +55,21 @@ versioned!(luxfer_glare_report, [40, 48], {
     }
 });
 
-/// Gets the correlated colour temperature of a linear RGB colour. *kelvin receives the temperature of the nearest
+/// Gets the correlated colour temperature of rgb, a linear colour. *kelvin receives the temperature of the nearest
 /// blackbody, in [1000, 20000]; *duv receives the distance from this blackbody in the CIE 1960 diagram, positive for
 /// greenish colours. Any thread.
 /// LUXFER_DEGENERATE if the colour is black or not finite.
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_colour_to_temperature(
     context: *mut luxfer_context,
-    red: f64,
-    green: f64,
-    blue: f64,
+    rgb: *const f64,
     kelvin: *mut f64,
     duv: *mut f64,
 ) -> luxfer_status {
     enter(context, |_| {
         let (kelvin, duv) = (Out::new(kelvin, "kelvin")?, Out::new(duv, "duv")?);
+        let [red, green, blue] = numbers(rgb, "rgb")?;
         let found = temperature::of_rgb(DVec3::new(red, green, blue));
         let found = found.ok_or_else(|| {
             Error::degenerate(format!("the colour ({red}, {green}, {blue}) is no light, and has no temperature"))
@@ -79,10 +80,11 @@ pub unsafe extern "C" fn luxfer_colour_to_temperature(
     })
 }
 
-/// Computes the linear RGB colour, with luminance 1, of a colour temperature; rgb receives three numbers. kelvin is in
-/// [1000, 20000]; duv, the distance from the blackbody in the CIE 1960 diagram, is in [-0.05, 0.05]. A channel is
-/// negative if the colour is out of gamut. Any thread.
+/// Computes the linear colour, with luminance 1, of a colour temperature; rgb receives the colour. kelvin is in [1000,
+/// 20000]; duv, the distance from the blackbody in the CIE 1960 diagram, is in [-0.05, 0.05]. A channel is negative if
+/// the colour is out of gamut. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_temperature_to_colour(
     context: *mut luxfer_context,

@@ -56,6 +56,15 @@ pub(super) fn floats<const N: usize>(bytes: &[u8]) -> [f32; N] {
     values
 }
 
+/// Reads the first `N` integers from bytes of the caller, at any alignment. Integers beyond the end of the bytes are 0.
+pub(super) fn integers<const N: usize>(bytes: &[u8]) -> [i32; N] {
+    let mut values = [0; N];
+    for (value, raw) in values.iter_mut().zip(bytes.chunks_exact(4)) {
+        *value = i32::from_ne_bytes([raw[0], raw[1], raw[2], raw[3]]);
+    }
+    values
+}
+
 /// Reads a zero-terminated string in UTF-8 from the caller's memory.
 pub(super) fn text<'a>(text: *const c_char, name: &str) -> Result<&'a str> {
     if text.is_null() {

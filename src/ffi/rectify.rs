@@ -198,7 +198,8 @@ pub struct luxfer_rectify_report {
     pub is_unwarped: u32,
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row.
+    /// Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp unwarps
+    /// other images of the photo's size, such as the confidence of the lights.
     pub to_photo: [f64; 9],
     /// Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise.
     pub corners: [[f64; 2]; 4],
@@ -415,31 +416,6 @@ pub unsafe extern "C" fn luxfer_rectify_get_image(
         };
         let output = stage.output()?;
         out.set(handle::give(Pixels::part(stage.context(), unwarped(&output)?.clone(), pick)));
-        Ok(())
-    })
-}
-
-/// Unwarps another image of the photo's size, such as the confidence of the lights, by the homography of the plane;
-/// pixels outside the photo become 0. The call is synchronous and takes a few milliseconds per megapixel. The caller
-/// releases *warped. Any thread.
-/// LUXFER_NOT_READY before a job with a mask has succeeded; LUXFER_INVALID_ARGUMENT if the size differs.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_rectify_warp(
-    rectify: *mut luxfer_rectify,
-    source: *mut luxfer_image,
-    warped: *mut *mut luxfer_image,
-) -> luxfer_status {
-    enter(rectify, |stage| {
-        let out = Out::new(warped, "warped")?;
-        let source = handle::borrow_in(stage.context(), source, "source")?;
-        let output = stage.output()?;
-        let unwarped = unwarped(&output)?;
-        output.found_in.image().check_same_size("the photo", source.image(), "source")?;
-        let (width, height) = (unwarped.image.width, unwarped.image.height);
-        let monitor = stage.context().monitor();
-        let quick = &stage.context().quick;
-        let image = quick.run(|| rectify::warp(source.image(), &unwarped.to_photo, width, height, monitor.job()))?;
-        out.set(handle::give(Pixels::part(stage.context(), Arc::new(image), |image| image)));
         Ok(())
     })
 }

@@ -8,8 +8,8 @@ use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
 use super::params::{self, Report, Versioned, versioned};
-use super::pointer::Out;
-use super::scene::{SceneObject, colour, luxfer_scene, missing};
+use super::pointer::{Out, bytes, integers};
+use super::scene::{SceneObject, luxfer_scene, missing, read_colour};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
@@ -175,7 +175,14 @@ pub(super) fn quantity(value: luxfer_quantity) -> Result<Quantity> {
     }
 }
 
-pub(super) fn constraint(value: luxfer_constraint) -> Result<Constraint> {
+/// Reads the argument `constraint` of a call: a value for each channel.
+pub(super) fn read_constraints(place: *const luxfer_constraint) -> Result<[Constraint; 3]> {
+    let bytes = bytes(place.cast(), size_of::<[luxfer_constraint; 3]>(), "constraint")?;
+    let [red, green, blue] = integers(bytes);
+    Ok([constraint(red)?, constraint(green)?, constraint(blue)?])
+}
+
+fn constraint(value: luxfer_constraint) -> Result<Constraint> {
     match value {
         LUXFER_CONSTRAINT_EQUAL => Ok(Constraint::Exactly),
         LUXFER_CONSTRAINT_AT_LEAST => Ok(Constraint::AtLeast),
@@ -263,17 +270,13 @@ pub unsafe extern "C" fn luxfer_relight_set_scene(
     })
 }
 
-/// Sets the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
+/// Sets rgb, the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
 /// LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_relight_set_target(
-    relight: *mut luxfer_relight,
-    red: f32,
-    green: f32,
-    blue: f32,
-) -> luxfer_status {
+pub unsafe extern "C" fn luxfer_relight_set_target(relight: *mut luxfer_relight, rgb: *const f32) -> luxfer_status {
     enter(relight, |stage| {
-        let target = colour("target", red, green, blue)?;
+        let target = read_colour(rgb)?;
         stage.change(|inputs| {
             inputs.target = Some(target);
             Ok(())
@@ -281,20 +284,19 @@ pub unsafe extern "C" fn luxfer_relight_set_target(
     })
 }
 
-/// Makes the target a lower or upper limit; red, green and blue are the LUXFER_CONSTRAINT_ values of the three
-/// channels. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
-/// scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the
-/// limit. Any thread.
+/// Makes the target a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green,
+/// blue. A channel that the photo clips should be LUXFER_CONSTRAINT_AT_LEAST. A channel with a limit gets the mean
+/// scale of the channels without a limit, if this scale respects the limit; else the scale that just reaches the limit.
+/// Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is not a LUXFER_CONSTRAINT_ value.
+/// cbindgen:ptrs-as-arrays=[[constraint; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_constraint(
     relight: *mut luxfer_relight,
-    red: luxfer_constraint,
-    green: luxfer_constraint,
-    blue: luxfer_constraint,
+    constraint: *const luxfer_constraint,
 ) -> luxfer_status {
     enter(relight, |stage| {
-        let constraints = [constraint(red)?, constraint(green)?, constraint(blue)?];
+        let constraints = read_constraints(constraint)?;
         stage.change(|inputs| {
             inputs.constraint = constraints;
             Ok(())

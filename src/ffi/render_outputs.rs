@@ -182,42 +182,24 @@ pub unsafe extern "C" fn luxfer_render_get_layer_name(
     })
 }
 
-/// Finds a layer by its name; *index receives its index. Any thread.
-/// LUXFER_NOT_FOUND if no layer has that name.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_render_find_layer(
-    render: *mut luxfer_render,
-    name: *const c_char,
-    index: *mut u32,
-) -> luxfer_status {
-    enter(render, |stage| {
-        let (name, out) = (text(name, "name")?, Out::new(index, "index")?);
-        let output = stage.output()?;
-        let found = output.layers.iter().position(|l| l.name == name).ok_or_else(|| {
-            let names: Vec<&str> = output.layers.iter().map(|l| l.name.as_str()).collect();
-            Error::new(ErrorKind::NotFound, format!("there is no layer {name:?}; there are {names:?}"))
-        })?;
-        out.set(found as u32);
-        Ok(())
-    })
-}
-
-/// Gets a layer in its current state: light in cd/m² with 3 channels, or an AOV with its channels. The caller releases
-/// *image. Any thread.
-/// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
+/// Gets the layer with a name, in its current state: light in cd/m² with 3 channels, or an AOV with its channels. The
+/// caller releases *image. Any thread.
+/// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if no layer has that name.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_layer(
     render: *mut luxfer_render,
-    index: u32,
+    name: *const c_char,
     image: *mut *mut luxfer_image,
 ) -> luxfer_status {
     enter(render, |stage| {
-        let out = Out::new(image, "image")?;
+        let (name, out) = (text(name, "name")?, Out::new(image, "image")?);
         let output = stage.output()?;
-        layer(&output, index)?;
+        let index = output.layers.iter().position(|l| l.name == name).ok_or_else(|| {
+            let names: Vec<&str> = output.layers.iter().map(|l| l.name.as_str()).collect();
+            Error::new(ErrorKind::NotFound, format!("there is no layer {name:?}; there are {names:?}"))
+        })?;
         let unseen_lights = output.unseen_lights;
-        let pixels =
-            Pixels::rendered(stage.context(), output, move |film| &film.layers[index as usize].image, unseen_lights);
+        let pixels = Pixels::rendered(stage.context(), output, move |film| &film.layers[index].image, unseen_lights);
         out.set(handle::give(pixels));
         Ok(())
     })

@@ -10,7 +10,7 @@ use super::guard::{enter, lock};
 use super::handle::{self, Handle, Owned, tag};
 use super::image::{Pixels, luxfer_image};
 use super::params::{Report, Versioned, versioned};
-use super::pointer::{Out, set_optional, text};
+use super::pointer::{Out, bytes, floats, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::io;
@@ -313,22 +313,21 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
 }
 
 /// Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
-/// the radiance of the environment is (red, green, blue) in cd/m², each in [0, 1e15], from every direction. Otherwise
-/// the radiance is an equirectangular image in linear values, multiplied by (red, green, blue). The centre of the image
-/// is towards -z, its top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn
-/// in proportion to the brightness of the image. The image is copied. Any thread.
+/// the radiance of the environment is rgb in cd/m², each channel in [0, 1e15], from every direction. Otherwise the
+/// radiance is an equirectangular image in linear values, multiplied by rgb. The centre of the image is towards -z, its
+/// top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn in proportion to
+/// the brightness of the image. The image is copied. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_environment(
     scene: *mut luxfer_scene,
     image: *mut luxfer_image,
-    red: f32,
-    green: f32,
-    blue: f32,
+    rgb: *const f32,
 ) -> luxfer_status {
     enter(scene, |object| {
-        let strength = colour("environment", red, green, blue)?;
+        let strength = read_colour(rgb)?;
         let Some(image) = Pixels::optional(&object.context, image, "image")? else {
             return object.change(0, |scene| {
                 scene.environment = Some(Environment::Constant(strength));
@@ -348,28 +347,6 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
         let bytes = (image.data.len() * size_of::<f32>()) as u64;
         object.change(bytes, |scene| {
             scene.environment = Some(Environment::Image(image));
-            Ok(())
-        })
-    })
-}
-
-/// Sets the emission of a material: red, green and blue in cd/m², each in [0, 1e15]. The material's emission texture,
-/// if any, is multiplied by them. Any thread.
-/// LUXFER_NOT_FOUND if there is no such material.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_scene_set_emission(
-    scene: *mut luxfer_scene,
-    material: u32,
-    red: f32,
-    green: f32,
-    blue: f32,
-) -> luxfer_status {
-    enter(scene, |object| {
-        let emission = colour("emission", red, green, blue)?;
-        object.change(0, |scene| {
-            let count = scene.materials.len();
-            let found = scene.materials.get_mut(material as usize);
-            found.ok_or_else(|| missing("material", material, count))?.emission = emission;
             Ok(())
         })
     })
@@ -408,25 +385,24 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
 
 /// Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
 /// luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material. On the
-/// side towards the room, this copy emits texture * (red, green, blue) in cd/m², each factor in [0, 1e15]. *mesh and
-/// *material receive the indices of the new mesh and material; each pointer may be NULL. Any thread.
+/// side towards the room, this copy emits texture * rgb in cd/m², each factor in [0, 1e15]. *mesh and *material receive
+/// the indices of the new mesh and material; each pointer may be NULL. Any thread.
 /// Errors: those of luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
 /// LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
+/// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_place_emission(
     scene: *mut luxfer_scene,
     name: *const c_char,
     texture: *mut luxfer_image,
-    red: f32,
-    green: f32,
-    blue: f32,
+    rgb: *const f32,
     mesh: *mut u32,
     material: *mut u32,
 ) -> luxfer_status {
     enter(scene, |object| {
         let name = text(name, "name")?;
         let texture = handle::borrow_in(&object.context, texture, "texture")?;
-        let strength = colour("emission", red, green, blue)?;
+        let strength = read_colour(rgb)?;
         let texture = texture.image().to_rgb()?;
         let bytes = (texture.data.len() * size_of::<f32>()) as u64;
         let placed = object.change(bytes, |scene| {
@@ -440,10 +416,15 @@ pub unsafe extern "C" fn luxfer_scene_place_emission(
 }
 
 /// Makes a colour of light from three channels; an error if a channel is out of range.
-pub(super) fn colour(name: &str, red: f32, green: f32, blue: f32) -> Result<Vec3> {
-    let colour = Vec3::new(red, green, blue);
+pub(super) fn colour(name: &str, channels: [f32; 3]) -> Result<Vec3> {
+    let colour = Vec3::from_array(channels);
     check_light(name, colour)?;
     Ok(colour)
+}
+
+/// Reads the argument `rgb` of a call, a colour of light.
+pub(super) fn read_colour(rgb: *const f32) -> Result<Vec3> {
+    colour("rgb", floats(bytes(rgb.cast(), size_of::<[f32; 3]>(), "rgb")?))
 }
 
 /// The error for an index that is beyond the end of a list of `count` items.

@@ -67,8 +67,7 @@ versioned!(luxfer_light_params, [56], {
 
 impl luxfer_light_params {
     fn light(&self) -> Result<PunctualLight> {
-        let [red, green, blue] = self.intensity;
-        let intensity = colour("light.intensity", red, green, blue)?;
+        let intensity = colour("light.intensity", self.intensity)?;
         let position = Vec3::from_array(self.position);
         let direction = Vec3::from_array(self.direction).try_normalize();
         let direction = direction.ok_or_else(|| {
@@ -162,8 +161,7 @@ impl luxfer_luminaire_params {
         let c0 = c0.ok_or_else(|| {
             Error::argument(format!("luminaire.c0 is {:?}; it must be finite and not along the axis", self.c0))
         })?;
-        let [red, green, blue] = self.colour;
-        let colour = colour("luminaire.colour", red, green, blue)?;
+        let colour = colour("luminaire.colour", self.colour)?;
         let factor = if flux > 0.0 { flux / rated } else { 1.0 };
         let colour = colour * (factor / f64::from(luminance(colour))) as f32;
         if colour.is_finite() {

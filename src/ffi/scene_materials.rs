@@ -327,7 +327,6 @@ fn described(params: &luxfer_material_params) -> Result<Material> {
     for channel in params.base_color {
         check_range("material.base_color", channel, 0.0, 1.0)?;
     }
-    let [red, green, blue] = params.emission;
     let cutoff = check_range("material.alpha_cutoff", params.alpha_cutoff, 0.0, f32::MAX)?;
     let alpha_mode = match params.alpha_mode {
         LUXFER_ALPHA_OPAQUE => AlphaMode::Opaque,
@@ -342,7 +341,7 @@ fn described(params: &luxfer_material_params) -> Result<Material> {
         base_color: Vec3::from_array(params.base_color),
         metallic: check_range("material.metallic", params.metallic, 0.0, 1.0)?,
         roughness: check_range("material.roughness", params.roughness, 0.0, 1.0)?,
-        emission: colour("material.emission", red, green, blue)?,
+        emission: colour("material.emission", params.emission)?,
         transmission: check_range("material.transmission", params.transmission, 0.0, 1.0)?,
         ior: check_range("material.ior", params.ior, 1.0, 4.0)?,
         double_sided: check_range("material.double_sided", params.double_sided, 0, 1)? == 1,

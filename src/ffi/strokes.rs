@@ -223,12 +223,3 @@ pub unsafe extern "C" fn luxfer_strokes_add_text(
         Ok(())
     })
 }
-
-/// Removes all strokes of a set. Stages keep their copies. Any thread.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_strokes_clear(strokes: *mut luxfer_strokes) -> luxfer_status {
-    enter(strokes, |object| {
-        *lock(&object.set) = StrokeSet::default();
-        Ok(())
-    })
-}

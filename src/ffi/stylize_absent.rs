@@ -36,7 +36,6 @@ absent! {
     luxfer_stylize_add_guides luxfer_stylize_clear_guides luxfer_stylize_set_source_mask
     luxfer_stylize_set_target_mask luxfer_stylize_set_painted
     luxfer_stylize_set_motion
-    luxfer_stylize_start luxfer_stylize_update luxfer_stylize_get_image luxfer_stylize_get_report luxfer_stylize_get_level
-    luxfer_stylize_get_round luxfer_stylize_get_pass
+    luxfer_stylize_start luxfer_stylize_update luxfer_stylize_get_image luxfer_stylize_get_report
     luxfer_plan_start_stylize luxfer_plan_get_stylize_params
 }

@@ -1,6 +1,5 @@
 //! The output of a stylisation, while it runs and after it has finished.
 
-use super::scene::missing;
 use crate::error::{Error, ErrorKind, Result};
 use crate::guides::Surfaces;
 use crate::image::Image;
@@ -106,9 +105,5 @@ impl Stylised {
         self.finished.as_ref().ok_or_else(|| {
             Error::new(ErrorKind::NotReady, "only the picture is there before the last level is done; wait for the job")
         })
-    }
-
-    pub(super) fn level(&self, index: u32) -> Result<&LevelReport> {
-        self.levels.get(index as usize).ok_or_else(|| missing("level", index, self.levels.len()))
     }
 }

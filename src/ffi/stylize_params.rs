@@ -8,7 +8,7 @@ use super::params::{self, versioned};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::patch::VoteMode;
-use crate::stylize::{self, Finder, Mode};
+use crate::stylize::{self, Finder};
 
 /// A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset.
 pub type luxfer_stylize_preset = i32;
@@ -20,24 +20,6 @@ pub const LUXFER_STYLIZE_FAST: luxfer_stylize_preset = 1;
 pub const LUXFER_STYLIZE_PREVIEW: luxfer_stylize_preset = 2;
 /// The settings of the paper, for comparison.
 pub const LUXFER_STYLIZE_PAPER: luxfer_stylize_preset = 3;
-
-/// How exemplar patches are assigned to target patches: a LUXFER_STYLIZE_MODE_ value.
-pub type luxfer_stylize_mode = i32;
-/// Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the default.
-pub const LUXFER_STYLIZE_MODE_BUDGET: luxfer_stylize_mode = 0;
-/// Every exemplar patch is used equally often (Jamriska et al. 2015).
-pub const LUXFER_STYLIZE_MODE_UNIFORM: luxfer_stylize_mode = 1;
-/// Each target patch takes its nearest exemplar patch (Wexler et al. 2007).
-pub const LUXFER_STYLIZE_MODE_NEAREST: luxfer_stylize_mode = 2;
-/// One pass in scan order, in which each pixel takes its nearest match or continues the match of a neighbour (Hertzmann
-/// et al. 2001); runs on one thread.
-pub const LUXFER_STYLIZE_MODE_GREEDY: luxfer_stylize_mode = 3;
-/// Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit Sphere (Sloan
-/// et al. 2001).
-pub const LUXFER_STYLIZE_MODE_LIT_SPHERE: luxfer_stylize_mode = 4;
-/// Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar et al.
-/// 2015): see the field occurrence. Runs on one thread, and with LUXFER_STYLIZE_SEARCH_PATCHMATCH only.
-pub const LUXFER_STYLIZE_MODE_OCCURRENCE: luxfer_stylize_mode = 5;
 
 /// The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value.
 pub type luxfer_stylize_search = i32;
@@ -71,8 +53,6 @@ pub const LUXFER_STYLIZE_VOTE_ADAPTIVE: luxfer_stylize_vote = 4;
 pub struct luxfer_stylize_params {
     /// sizeof(luxfer_stylize_params), set by luxfer_stylize_params_init.
     pub struct_size: u32,
-    /// Assignment of patches: a LUXFER_STYLIZE_MODE_ value; default LUXFER_STYLIZE_MODE_BUDGET.
-    pub mode: luxfer_stylize_mode,
     /// Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH.
     pub search: luxfer_stylize_search,
     /// Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if the images are smaller than that.
@@ -80,16 +60,20 @@ pub struct luxfer_stylize_params {
     /// Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
     /// 1e6]; default 2.
     pub guide_weight: f32,
+    /// Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
+    /// factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
+    pub coarse_guides: f32,
     /// Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16]; default 6.
     /// The coarsest level is at least 5 patches wide and high.
     pub levels: u32,
     /// Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting.
     pub iterations: u32,
+    /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
+    pub coarse_iterations: u32,
     /// Rounds (EM iterations) on the finest level, in [1, 100]; default 1.
     pub finest_iterations: u32,
-    /// Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
-    /// LUXFER_STYLIZE_MODE_BUDGET each target patch takes its nearest match in these rounds, without the error budget.
-    /// In other modes these are additional rounds of that mode.
+    /// Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In these rounds
+    /// each target patch takes its nearest match, without the error budget.
     pub polish: u32,
     /// Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1.
     pub search_iterations: u32,
@@ -123,26 +107,14 @@ pub struct luxfer_stylize_params {
     /// Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the target's
     /// light guides, in [0, 1]; 0, the default: not at all.
     pub match_appearance: f32,
-    /// Seed of the search; default 1.
-    pub seed: u64,
-    /// Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
-    /// factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
-    pub coarse_guides: f32,
-    /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
-    pub coarse_iterations: u32,
-    /// Weight lambda of the penalty for patches that are used often, in LUXFER_STYLIZE_MODE_OCCURRENCE, in [0, 10];
-    /// with 0, the mode equals LUXFER_STYLIZE_MODE_NEAREST. Default 0.1, which Fiser et al. 2016 chose for their
-    /// picture of this method (their Fig. 10n). The penalty is added to the distance of a match (their Eq. 1), which is
-    /// the weighted sum of squared differences over the pixels of a patch, with channels in [0, 1]. A patch that is
-    /// used as often as the average has the penalty lambda.
-    pub occurrence: f32,
     /// Must be 0.
     pub reserved: u32,
+    /// Seed of the search; default 1.
+    pub seed: u64,
 }
 
-versioned!(luxfer_stylize_params, [104], { Self::of(&stylize::Params::default()) });
+versioned!(luxfer_stylize_params, [96], { Self::of(&stylize::Params::default()) });
 
-const MODES: [Mode; 6] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::LitSphere, Mode::Occurrence];
 const SEARCHES: [Finder; 2] = [Finder::PatchMatch, Finder::KdTree];
 const VOTES: [VoteMode; 5] =
     [VoteMode::Plain, VoteMode::Weighted, VoteMode::Nearest, VoteMode::Majority, VoteMode::Adaptive];
@@ -156,13 +128,14 @@ pub(super) fn choice<T: Copy>(values: &[T], index: i32, name: &str, prefix: &str
 impl luxfer_stylize_params {
     pub(super) fn of(p: &stylize::Params) -> Self {
         Self {
-            struct_size: 104,
-            mode: p.mode as i32,
+            struct_size: 96,
             search: p.finder as i32,
             patch: p.patch as u32,
             guide_weight: p.guide_weight,
+            coarse_guides: p.coarse_guides,
             levels: p.levels as u32,
             iterations: p.iterations as u32,
+            coarse_iterations: p.coarse_iterations as u32,
             finest_iterations: p.finest_iterations as u32,
             polish: p.polish as u32,
             search_iterations: p.search_iterations as u32,
@@ -176,11 +149,8 @@ impl luxfer_stylize_params {
             keep_for_update: 0,
             coherence: p.coherence,
             match_appearance: p.match_appearance,
-            seed: p.seed,
-            coarse_guides: p.coarse_guides,
-            coarse_iterations: p.coarse_iterations as u32,
-            occurrence: p.occurrence,
             reserved: 0,
+            seed: p.seed,
         }
     }
 
@@ -189,12 +159,13 @@ impl luxfer_stylize_params {
             return Err(Error::argument(format!("reserved is {}; it must be 0", self.reserved)));
         }
         let params = stylize::Params {
-            mode: choice(&MODES, self.mode, "mode", "LUXFER_STYLIZE_MODE_")?,
             finder: choice(&SEARCHES, self.search, "search", "LUXFER_STYLIZE_SEARCH_")?,
             patch: self.patch as usize,
             guide_weight: self.guide_weight,
+            coarse_guides: self.coarse_guides,
             levels: self.levels as usize,
             iterations: self.iterations as usize,
+            coarse_iterations: self.coarse_iterations as usize,
             finest_iterations: self.finest_iterations as usize,
             polish: self.polish as usize,
             search_iterations: self.search_iterations as usize,
@@ -208,9 +179,7 @@ impl luxfer_stylize_params {
             coherence: self.coherence,
             match_appearance: self.match_appearance,
             seed: self.seed,
-            coarse_guides: self.coarse_guides,
-            coarse_iterations: self.coarse_iterations as usize,
-            occurrence: self.occurrence,
+            ..stylize::Params::default()
         };
         params.check()?;
         Ok(params)

@@ -1,14 +1,12 @@
 //! Results of a stylisation
 //!
-//! The picture, the place in the artwork from which each pixel was painted, the error of the guides, and statistics of
-//! the run level by level.
+//! The picture, the place in the artwork from which each pixel was painted, and the error of the guides.
 
 use super::guard::enter;
 use super::handle::{self, Owned};
 use super::image::{Pixels, luxfer_image};
 use super::params::{Report, Versioned, versioned};
 use super::pointer::Out;
-use super::scene::missing;
 use super::status::luxfer_status;
 use super::stylize::luxfer_stylize;
 use super::stylize_output::{Finished, Stylised};
@@ -40,7 +38,7 @@ pub struct luxfer_stylize_report {
     /// 1 if the run is complete; 0 if only some levels are finished: then all fields but levels, halvings and energy
     /// are 0.
     pub is_complete: u32,
-    /// Number of finished levels; see luxfer_stylize_get_level.
+    /// Number of finished resolution levels.
     pub levels: u32,
     /// Number of times that the target's sides were halved to get the size of the picture.
     pub halvings: u32,
@@ -109,42 +107,6 @@ impl luxfer_stylize_report {
     }
 }
 
-/// One round (EM iteration) on a level: matching, then voting.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_stylize_round {
-    /// sizeof(luxfer_stylize_round), set by the function that fills the struct.
-    pub struct_size: u32,
-    /// Number of matching passes under the error budget; see luxfer_stylize_get_pass.
-    pub passes: u32,
-    /// Energy after this round, as luxfer_stylize_report.energy. On all levels but the finest, all guides together have
-    /// the weight guide_weight * coarse_guides.
-    pub energy: f64,
-}
-
-versioned!(luxfer_stylize_round, [16], { Self { struct_size: 16, passes: 0, energy: 0.0 } });
-
-/// One matching pass under the error budget, in LUXFER_STYLIZE_MODE_BUDGET.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct luxfer_stylize_pass {
-    /// sizeof(luxfer_stylize_pass), set by the function that fills the struct.
-    pub struct_size: u32,
-    /// Reserved; always 0.
-    pub reserved: u32,
-    /// Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which the
-    /// sorted errors begin to rise steeply. The sum of the errors before the knee is the error budget.
-    pub knee: f64,
-    /// Share of the target with a match after this pass, in [0, 1].
-    pub coverage: f64,
-    /// Number of target patches that received a match in this pass.
-    pub new_matches: u64,
-}
-
-versioned!(luxfer_stylize_pass, [32], {
-    Self { struct_size: 32, reserved: 0, knee: 0.0, coverage: 0.0, new_matches: 0 }
-});
-
 impl HasWarnings for luxfer_stylize {
     fn list(stage: &Self::Object) -> Result<Vec<(luxfer_stage, Warning)>> {
         let output = stage.output()?;
@@ -195,77 +157,6 @@ pub unsafe extern "C" fn luxfer_stylize_get_report(
             halvings: output.halvings as u32,
             energy: output.levels.last().and_then(|l| l.energy.last().copied()).unwrap_or(0.0),
             ..finished
-        });
-        Ok(())
-    })
-}
-
-/// Gets the size of a level in pixels and the number of its rounds; level 0 is the coarsest. width, height and rounds
-/// may be NULL. Any thread.
-/// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_get_level(
-    stylize: *mut luxfer_stylize,
-    level: u32,
-    width: *mut u32,
-    height: *mut u32,
-    rounds: *mut u32,
-) -> luxfer_status {
-    enter(stylize, |stage| {
-        let output = stage.output()?;
-        let found = output.level(level)?;
-        super::pointer::set_optional(width, found.width as u32);
-        super::pointer::set_optional(height, found.height as u32);
-        super::pointer::set_optional(rounds, found.energy.len() as u32);
-        Ok(())
-    })
-}
-
-/// Describes a round (EM iteration) of a level; level and index are numbers from 0. size is sizeof *round. Any thread.
-/// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level or round.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_get_round(
-    stylize: *mut luxfer_stylize,
-    level: u32,
-    index: u32,
-    round: *mut luxfer_stylize_round,
-    size: usize,
-) -> luxfer_status {
-    enter(stylize, |stage| {
-        let out = Report::new(round, size)?;
-        let output = stage.output()?;
-        let level = output.level(level)?;
-        let energy = level.energy.get(index as usize).ok_or_else(|| missing("round", index, level.energy.len()))?;
-        let passes = level.passes.get(index as usize).map_or(0, Vec::len) as u32;
-        out.set(luxfer_stylize_round { passes, energy: *energy, ..luxfer_stylize_round::defaults() });
-        Ok(())
-    })
-}
-
-/// Describes a matching pass of a round (EM iteration); level, round and index are numbers from 0. size is sizeof
-/// *pass. Any thread.
-/// LUXFER_NOT_READY before the first level of a job is finished; LUXFER_NOT_FOUND if there is no such level, round or
-/// pass.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn luxfer_stylize_get_pass(
-    stylize: *mut luxfer_stylize,
-    level: u32,
-    round: u32,
-    index: u32,
-    pass: *mut luxfer_stylize_pass,
-    size: usize,
-) -> luxfer_status {
-    enter(stylize, |stage| {
-        let out = Report::new(pass, size)?;
-        let output = stage.output()?;
-        let level = output.level(level)?;
-        let passes = level.passes.get(round as usize).ok_or_else(|| missing("round", round, level.passes.len()))?;
-        let found = passes.get(index as usize).ok_or_else(|| missing("pass", index, passes.len()))?;
-        out.set(luxfer_stylize_pass {
-            knee: found.knee,
-            coverage: found.coverage,
-            new_matches: found.gained as u64,
-            ..luxfer_stylize_pass::defaults()
         });
         Ok(())
     })

@@ -3,10 +3,14 @@
 //! The lighting transfer from end to end: lights a scene as in a photo, from the photo and a few strokes. It runs its
 //! stages one after the other. You can read every result as soon as its stage has ended, replace it by a result of
 //! your own, and continue from any stage.
+//!
+//! stages.h and render.h declare the structs of single stages. Include them, or luxfer.h, to change the settings of a
+//! stage (luxfer_transfer_params), to read luxfer_rectify_report or luxfer_relight_report, or to run a stage alone.
 
 use super::context::luxfer_context;
+use super::depth::{depth_kind, luxfer_depth_kind};
 use super::emission::luxfer_emission_params;
-use super::features::{depth_kind, luxfer_depth_kind, luxfer_features, luxfer_features_params};
+use super::features::{luxfer_features, luxfer_features_params};
 use super::geometry::list;
 use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
@@ -242,8 +246,7 @@ pub unsafe extern "C" fn luxfer_transfer_set_photo(
     })
 }
 
-/// Sets a depth map of the photo; depth and kind are as for luxfer_features_set_depth. depth may be NULL: no depth
-/// map. Any thread.
+/// Sets a depth map of the photo; kind is a LUXFER_DEPTH_ value. depth may be NULL: no depth map. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_depth(
     transfer: *mut luxfer_transfer,

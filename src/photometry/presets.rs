@@ -6,10 +6,12 @@
 //! 0.4, as quoted by Trilux, Fagerhult and Performance in Lighting, with walls and ceilings of the 2011 edition. Only
 //! the standard itself is authoritative.
 
+use std::ffi::CStr;
+
 /// The requirements for one type of room or activity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Preset {
-    pub name: &'static str,
+    pub name: &'static CStr,
     /// Year of the standard's edition.
     pub edition: u32,
     /// Minimum mean illuminance of the task area, in lux.
@@ -26,7 +28,7 @@ pub struct Preset {
     pub ceiling: f64,
 }
 
-const fn preset(name: &'static str, edition: u32, task: [f64; 4], surround: [f64; 2]) -> Preset {
+const fn preset(name: &'static CStr, edition: u32, task: [f64; 4], surround: [f64; 2]) -> Preset {
     let [illuminance, glare, uniformity, rendering] = task;
     let [walls, ceiling] = surround;
     Preset { name, edition, illuminance, glare, uniformity, rendering, walls, ceiling }
@@ -34,13 +36,13 @@ const fn preset(name: &'static str, edition: u32, task: [f64; 4], surround: [f64
 
 /// The rooms and activities, each with its requirements. \[convention: EN 12464-1\]
 pub const PRESETS: &[Preset] = &[
-    preset("office: writing, reading, data processing", 2011, [500.0, 19.0, 0.6, 80.0], [75.0, 50.0]),
-    preset("office: filing, copying", 2011, [300.0, 19.0, 0.4, 80.0], [75.0, 50.0]),
-    preset("school: entrance halls", 2021, [200.0, 22.0, 0.4, 80.0], [75.0, 50.0]),
-    preset("school: circulation areas, corridors", 2021, [100.0, 25.0, 0.4, 80.0], [50.0, 30.0]),
-    preset("school: stairs", 2021, [150.0, 25.0, 0.4, 80.0], [50.0, 30.0]),
-    preset("library: bookshelves", 2021, [200.0, 19.0, 0.6, 80.0], [0.0, 0.0]),
-    preset("library: reading areas", 2021, [500.0, 19.0, 0.6, 80.0], [100.0, 50.0]),
+    preset(c"office: writing, reading, data processing", 2011, [500.0, 19.0, 0.6, 80.0], [75.0, 50.0]),
+    preset(c"office: filing, copying", 2011, [300.0, 19.0, 0.4, 80.0], [75.0, 50.0]),
+    preset(c"school: entrance halls", 2021, [200.0, 22.0, 0.4, 80.0], [75.0, 50.0]),
+    preset(c"school: circulation areas, corridors", 2021, [100.0, 25.0, 0.4, 80.0], [50.0, 30.0]),
+    preset(c"school: stairs", 2021, [150.0, 25.0, 0.4, 80.0], [50.0, 30.0]),
+    preset(c"library: bookshelves", 2021, [200.0, 19.0, 0.6, 80.0], [0.0, 0.0]),
+    preset(c"library: reading areas", 2021, [500.0, 19.0, 0.6, 80.0], [100.0, 50.0]),
 ];
 
 /// Minimum uniformity of walls and ceilings. [convention: EN 12464-1]
@@ -57,7 +59,7 @@ pub enum Shortfall {
 impl Preset {
     /// Returns the preset with the given name.
     pub fn find(name: &str) -> Option<&'static Self> {
-        PRESETS.iter().find(|p| p.name == name)
+        PRESETS.iter().find(|p| p.name.to_bytes() == name.as_bytes())
     }
 
     /// Returns the requirements that a task area fails, given its minimum and mean illuminance in lux, and its glare

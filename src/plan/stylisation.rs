@@ -41,8 +41,8 @@ pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job
 /// Returns a list of settings, in the order from quick to careful, and the index of the reference settings
 /// (`Params::fast`) in this list. The settings come from the Pareto front in `benches/stylit.rs`.
 fn ladder(params: &Params) -> (Vec<Params>, usize) {
-    // These modes make at most one matching pass, so their settings offer no choice.
-    if matches!(params.mode, Mode::Greedy | Mode::LitSphere) {
+    // This mode makes one matching pass, so its settings offer no choice.
+    if params.mode == Mode::Greedy {
         return (vec![params.clone()], 0);
     }
     let rung = |like: &Params| Params {

@@ -5,7 +5,7 @@ use super::directions::with_normals;
 use super::guides::{Channels, no_guides};
 use super::lack::LightSamples;
 use super::memory::Memory;
-use super::params::{Input, Mode, Params, check_side};
+use super::params::{Input, Params, check_side};
 use super::pca;
 use crate::error::{Error, Result};
 use crate::exec;
@@ -79,12 +79,8 @@ impl Problem {
             mask.iter_mut().zip(&broken).for_each(|(m, b)| *m &= !b);
         }
         check_motion(input, first.target)?;
-        // The Lit Sphere looks up single pixels; in other modes, reduce the patch to an odd width that fits.
-        let patch = match params.mode {
-            Mode::LitSphere => 1,
-            _ if params.patch <= shortest => params.patch,
-            _ => (shortest - 1) | 1,
-        };
+        // Reduce the patch to an odd width that fits.
+        let patch = if params.patch <= shortest { params.patch } else { (shortest - 1) | 1 };
         let memory = Some(Memory::of(&guides, normals_weight, patch, job)?);
         let light = LightSamples::of(&guides, source_mask.as_deref())?;
         if params.preview {

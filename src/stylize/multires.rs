@@ -17,7 +17,7 @@ use super::retrieve::{PassReport, retrieve};
 use crate::error::{Error, Result};
 use crate::image::{Comparison, Image, try_collect};
 use crate::job::Job;
-use crate::patch::{Field, NONE, Occurrence, Search, SearchIteration, VoteMode, level_count, unpack};
+use crate::patch::{Field, NONE, Occurrence, Search, SearchIteration, level_count, unpack};
 use crate::rng::hash;
 
 /// If there are at most this many pairs of patches, the initial field is found by exhaustive comparison, otherwise by
@@ -56,11 +56,7 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
     // all levels: on the finest level alone, uncovered places and changed light would get the paint around them.
     let continues = input.previous.is_some() && moved.is_none();
     // Build the pyramid. Each level below full resolution is at least five patches wide along its shortest side.
-    let levels = match params.mode {
-        Mode::LitSphere => 1,
-        _ if continues => 1,
-        _ => level_count(problem.shortest_side(), 5 * problem.patch, params.levels),
-    };
+    let levels = if continues { 1 } else { level_count(problem.shortest_side(), 5 * problem.patch, params.levels) };
     let mut coarser: Vec<Problem> = Vec::new();
     for _ in 1..levels {
         let next = coarser.last().unwrap_or(problem).halve(job.part(0.0, 0.01))?;
@@ -139,15 +135,13 @@ fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, 
         _ => Vec::new(),
     };
     let mut picture = problem.blank_picture()?;
-    let vote_mode = if params.mode == Mode::LitSphere { VoteMode::Nearest } else { params.vote };
-    paint(&mut picture, &field, problem, vote_mode, job.part(0.1, 0.12), |_| true)?;
+    paint(&mut picture, &field, problem, params.vote, job.part(0.1, 0.12), |_| true)?;
     Ok(State { field, picture, kept, memory })
 }
 
 /// Alternates matching and voting on level `l`.
 fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job: Job) -> Result<LevelReport> {
     let iterations = match (params.mode, l) {
-        (Mode::LitSphere, _) => 0,
         (Mode::Greedy, _) => 1,
         (_, 0) => params.finest_iterations + params.polish,
         (_, 1) => params.iterations,
@@ -217,7 +211,7 @@ fn rematch(
         Mode::Budget | Mode::Uniform => {
             return retrieve(level, field, &changed, kept, params, k as u64, job).map(Some);
         }
-        Mode::Nearest | Mode::LitSphere | Mode::Occurrence => nearest(level, field, &changed, params, k, job)?,
+        Mode::Nearest | Mode::Occurrence => nearest(level, field, &changed, params, k, job)?,
         Mode::Greedy => {
             nearest(level, field, &changed, params, k, job.part(0.0, 0.55))?;
             greedy::run(level, field, picture, l, job.part(0.55, 1.0))?;

@@ -6,7 +6,8 @@ use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 use crate::patch::{Field, MAX_SIDE, VoteMode};
 
-/// The matching method.
+/// The matching method. The C interface has only [`Mode::Budget`]; the others are earlier methods, with which
+/// `benches/stylit.rs` compares it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mode {
     /// The paper's method: each exemplar patch searches for its target (reversed retrieval), under an error budget.
@@ -17,9 +18,6 @@ pub enum Mode {
     Nearest,
     /// One pass in scan order: each pixel takes its best or its most coherent match (Hertzmann et al. 2001).
     Greedy,
-    /// Each pixel takes the exemplar pixel with the nearest guides; with normals as the guide, the Lit Sphere (Sloan
-    /// et al. 2001).
-    LitSphere,
     /// Each target patch takes its nearest exemplar patch, with a penalty for frequently used exemplar patches (Kaspar
     /// et al. 2015): see `Params::occurrence`. Single-threaded, and with PatchMatch only.
     Occurrence,

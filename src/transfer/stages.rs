@@ -198,7 +198,7 @@ impl Transfer {
         let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
         let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.08))?;
         let light =
-            emission::part_panes(&unwarped.image, light, &unwarped.valid, unwarped.to_photo, job.part(0.08, 0.1))?;
+            emission::complete_lights(&unwarped.image, light, &unwarped.valid, unwarped.to_photo, job.part(0.08, 0.1))?;
         let input = emission::Input {
             unwarped: &unwarped.image,
             light: &light,

@@ -71,13 +71,13 @@ class Busy(Player):
             fraction, patience = ctypes.c_double(), time.monotonic() + 5
             # Another job of the program may run before the endless one.
             while fraction.value == 0 and time.monotonic() < patience:
-                check(library.luxfer_job_get_progress(job, ctypes.addressof(fraction), None))
+                check(library.luxfer_job_get_progress(job, ctypes.addressof(fraction)))
                 time.sleep(0.001)
 
     def end(self) -> None:
         for render, job in self.endless.values():
             check(library.luxfer_job_cancel(job))
-            library.luxfer_job_wait(job, -1, abi.luxfer_progress_fn(), None)
+            check(library.luxfer_job_wait(job, -1, abi.luxfer_progress_fn(), None, ctypes.addressof(ctypes.c_int32())))
             check(library.luxfer_release(job))
             check(library.luxfer_release(render))
         self.endless.clear()

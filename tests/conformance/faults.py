@@ -85,7 +85,7 @@ def broken(field, right: Argument, others: list[Argument]) -> list[Argument]:
         if field.type == "char" and right[0] == "bytes":
             return [["null"], *map(plain, TEXTS)]
         if right[0] == "array":
-            return [["null"], *(array(right[1], *[x] * len(right[2])) for x in (REALS if right[1] != "uint32_t" else [0, 7, 2**32 - 1]))]
+            return [["null"], *(array(right[1], *[x] * len(right[2])) for x in (REALS if right[1] in ("float", "double") else [0, 7, 2**32 - 1]))]
         return [["null"]]
     return numbers(field.type, field.name)
 

@@ -210,7 +210,10 @@ class Loader:
             status = self.library.luxfer_render_start_merge(handle, ctypes.byref(settings), ctypes.byref(job))
             check(seed, status, start)
             if status == abi.LUXFER_OK:
-                check(seed, self.library.luxfer_job_wait(job, -1, abi.luxfer_progress_fn(), None), start)
+                outcome = ctypes.c_int32()
+                wait = self.library.luxfer_job_wait
+                check(seed, wait(job, -1, abi.luxfer_progress_fn(), None, ctypes.byref(outcome)), start)
+                check(seed, outcome.value, start)
                 self.library.luxfer_release(job)
         self.library.luxfer_render_clear_parts(handle)
 

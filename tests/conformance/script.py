@@ -94,7 +94,7 @@ class Script:
 
     def finish(self, job: Argument) -> None:
         """Adds calls that wait for a job and release it."""
-        self.call("job_wait", job, 60_000, None, None)
+        self.call("job_wait", job, 60_000, None, None, ["room", 0x5A])
         self.call("release", job)
 
     def run(self, verb: str, *arguments) -> None:

@@ -43,7 +43,8 @@ luxfer_status run(luxfer_transfer *transfer, luxfer_stage first, luxfer_stage la
     luxfer_job *job = nullptr;
     const luxfer_status started = luxfer_transfer_start(transfer, first, last, nullptr, &job);
     if (started != LUXFER_OK) return started;
-    const luxfer_status ended = luxfer_job_wait(job, -1, nullptr, nullptr);
+    luxfer_status ended = LUXFER_UNKNOWN;
+    CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr, &ended));
     CHECK_OK(luxfer_release(job));
     return ended;
 }

@@ -206,9 +206,12 @@ int main() {
         lights.start(colour).wait();
         rectify.set_mask(plane.image(LUXFER_SEGMENT_MASK));
         rectify.start().wait();
-        emission.set_exemplar(rectify.image(LUXFER_RECTIFY_UNWARPED),
-                              rectify.warp(lights.image(LUXFER_SEGMENT_CONFIDENCE)), rectify.image(LUXFER_RECTIFY_VALID));
-        emission.set_photo(photo, rectify.report().to_photo);
+        const luxfer_rectify_report view = rectify.report();
+        const Image unwarped = rectify.image(LUXFER_RECTIFY_UNWARPED);
+        const luxfer::ImageSize size = unwarped.size();
+        const Image light = lights.image(LUXFER_SEGMENT_CONFIDENCE).warp(view.to_photo, size.width, size.height);
+        emission.set_exemplar(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID));
+        emission.set_photo(photo, view.to_photo);
         luxfer::EmissionParams texture;
         texture.width = 400;
         texture.height = 300;

@@ -52,9 +52,10 @@ luxfer_image *flat(Size size, float value) {
 }
 
 luxfer_status finish(luxfer_job *job) {
-    const luxfer_status status = luxfer_job_wait(job, -1, nullptr, nullptr);
+    luxfer_status outcome = LUXFER_UNKNOWN;
+    CHECK_OK(luxfer_job_wait(job, -1, nullptr, nullptr, &outcome));
     CHECK_OK(luxfer_release(job));
-    return status;
+    return outcome;
 }
 
 luxfer_guides_params small_guides() {

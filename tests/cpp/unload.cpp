@@ -39,10 +39,12 @@ bool use(void *library) {
     luxfer_context *context = nullptr;
     luxfer_demo_photo *photo = nullptr;
     luxfer_job *job = nullptr;
+    luxfer_status outcome = LUXFER_UNKNOWN;
     return find<decltype(luxfer_context_create)>(library, "luxfer_context_create")(nullptr, &context) == LUXFER_OK &&
            find<decltype(luxfer_demo_photo_create)>(library, "luxfer_demo_photo_create")(context, &photo) == LUXFER_OK &&
            find<decltype(luxfer_demo_photo_start)>(library, "luxfer_demo_photo_start")(photo, nullptr, &job) == LUXFER_OK &&
-           find<decltype(luxfer_job_wait)>(library, "luxfer_job_wait")(job, 5, nullptr, nullptr) == LUXFER_NOT_READY &&
+           find<decltype(luxfer_job_wait)>(library, "luxfer_job_wait")(job, 5, nullptr, nullptr, &outcome) == LUXFER_OK &&
+           outcome == LUXFER_NOT_READY &&
            find<decltype(luxfer_release)>(library, "luxfer_release")(job) == LUXFER_OK &&
            find<decltype(luxfer_release)>(library, "luxfer_release")(photo) == LUXFER_OK &&
            find<decltype(luxfer_release)>(library, "luxfer_release")(context) == LUXFER_OK;

@@ -252,7 +252,7 @@ void jobs_report_and_are_cancelled() {
     })).cancel());
     const Job fails = ok(Job::start(context, [&]() -> luxfer::Result<> {
         ++runs;
-        return luxfer::detail::finish(context.get(), luxfer_image_save(nullptr, "no.png", 1));
+        return luxfer::detail::to_result(context.get(), luxfer_image_save(nullptr, "no.png", 1));
     }));
     CHECK_ERROR(fails.wait(), LUXFER_INVALID_ARGUMENT);
     CHECK(runs >= 1);
@@ -417,7 +417,10 @@ void scenes_come_back() {
     OK(copy.requirements_text());
     OK(copy.set_environment({1, 2, 3}));
     CHECK((ok(copy.requirements()).lights & LUXFER_LIGHTS_ENVIRONMENT) != 0);
-    OK(copy.set_emission(1, {1, 1, 1}));
+    luxfer_material_params lamp = ok(copy.material(1));
+    lamp.emission[0] = 2;
+    OK(copy.set_material(1, lamp));
+    CHECK(ok(copy.material(1)).emission[0] == 2.0f);
     OK(copy.add_light());
     OK(copy.set_camera(0, luxfer::CameraParams()));
     CHECK(ok(copy.camera(0)).fov_y == 1.0f);
@@ -431,8 +434,9 @@ void layers_have_names() {
     OK(render.set_aovs(LUXFER_AOV_DEPTH));
     OK(render.clear_camera());
     OK(start(render, 4).wait());
-    CHECK(ok(render.layer_count()) == 2 && ok(render.layer_name(0)) == "direct" && ok(render.find_layer("Depth")) == 1);
-    CHECK(ok(ok(render.layer(1)).size()).channels == 1);
+    CHECK(ok(render.layer_count()) == 2 && ok(render.layer_name(0)) == "direct" && ok(render.layer_name(1)) == "Depth");
+    CHECK(ok(ok(render.layer("Depth")).size()).channels == 1);
+    CHECK_ERROR(render.layer("depth"), LUXFER_NOT_FOUND);
     CHECK(ok(render.report()).samples == 4);
 
     const luxfer::Illuminance illuminance = ok(luxfer::Illuminance::create(context));
@@ -446,11 +450,11 @@ void layers_have_names() {
 
 void lights_have_names() {
     const Context context = new_context();
-    const auto white = ok(luxfer::colour_temperature(context, 1, 1, 1));
+    const auto white = ok(luxfer::colour_temperature(context, {1, 1, 1}));
     CHECK(white.kelvin > 6480 && white.kelvin < 6530);
     const auto rgb = ok(luxfer::colour_of_temperature(context, white));
     CHECK(rgb[0] > 0.99 && rgb[0] < 1.01 && rgb[2] > 0.99 && rgb[2] < 1.01);
-    CHECK_ERROR(luxfer::colour_temperature(context, 0, 0, 0), LUXFER_DEGENERATE);
+    CHECK_ERROR(luxfer::colour_temperature(context, {0, 0, 0}), LUXFER_DEGENERATE);
     CHECK(ok(luxfer::glare(new_image(context), 1)).threshold >= 0);
     const std::array<luxfer_observer, 2> observers = {{{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}}}};
     const luxfer::Scene dark = ok(luxfer::Scene::create(context));
@@ -462,7 +466,7 @@ void lights_have_names() {
     const auto fit = ok(luxfer::fit_temperature(context, {1, 1, 1}, {0, 0, 0}, {9, 9, 9}));
     CHECK(fit.kelvin > 6000 && fit.kelvin < 7000 && fit.luminance > 8 && fit.delta_e < 5);
     CHECK(ok(luxfer::preset_count(context)) > 1 && ok(luxfer::preset(context, 0)).illuminance == 500);
-    CHECK(ok(luxfer::preset_name(context, 0)).find("office") == 0);
+    CHECK(std::strstr(ok(luxfer::preset(context, 0)).name, "office") != nullptr);
     CHECK_ERROR(luxfer::preset(context, 1000), LUXFER_NOT_FOUND);
     luxfer::FalseColourParams range;
     range.maximum = 10;
@@ -505,7 +509,6 @@ void stages_say_what_they_lack() {
     CHECK_ERROR(importance.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(guides.start(), LUXFER_INVALID_OPERATION);
     CHECK_ERROR(rectify.report(), LUXFER_NOT_READY);
-    CHECK_ERROR(rectify.warp(new_image(context)), LUXFER_NOT_READY);
     CHECK_ERROR(features.set_view(rectify), LUXFER_NOT_READY);
     CHECK_ERROR(segment.image(LUXFER_SEGMENT_MASK), LUXFER_NOT_READY);
     CHECK_ERROR(emission.corner(0, 0), LUXFER_NOT_READY);

@@ -60,8 +60,6 @@ void lighting_transfer(const Context &context) {
     features.set_photo(photo);
     features.set_view(rectify);
     const auto painted = copied(luxfer::Strokes::create(context, 300, 200));
-    painted.add("plane 2 1 1 20 20");
-    painted.clear();
     const float ceiling[] = {150, 20, 250, 60};
     painted.add(LUXFER_PHASE_PLANE, ceiling, 2, true);
     painted.add(strokes);
@@ -92,8 +90,10 @@ void lighting_transfer(const Context &context) {
     const luxfer_rectify_report view = rectify.report();
     CHECK(view.is_unwarped == 1);
     const auto emission = copied(luxfer::Emission::create(context));
-    emission.set_exemplar(rectify.image(LUXFER_RECTIFY_UNWARPED), rectify.warp(lights.image(LUXFER_SEGMENT_CONFIDENCE)),
-                          rectify.image(LUXFER_RECTIFY_VALID));
+    const Image unwarped = rectify.image(LUXFER_RECTIFY_UNWARPED);
+    const luxfer::ImageSize extent = unwarped.size();
+    const Image light = lights.image(LUXFER_SEGMENT_CONFIDENCE).warp(view.to_photo, extent.width, extent.height);
+    emission.set_exemplar(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID));
     emission.set_photo(photo, view.to_photo);
     luxfer::EmissionParams texture;
     texture.width = 96;
@@ -109,8 +109,6 @@ void lighting_transfer(const Context &context) {
     const Image whole = emission.image(LUXFER_EMISSION_TEXTURE);
 
     // Add a second style, whose weight is 0 everywhere; then plan the texture and render one tile of it.
-    const Image unwarped = rectify.image(LUXFER_RECTIFY_UNWARPED);
-    const Image light = rectify.warp(lights.image(LUXFER_SEGMENT_CONFIDENCE));
     const float nothing[] = {0};
     const Image nowhere = Image::create(context, {nothing, 1, 1, 1});
     emission.add_style(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID), 1, nowhere);
@@ -341,9 +339,6 @@ void stylisation(const Context &context) {
     CHECK(has_size(stylize.image(), 48, 36, artwork.size().channels));
     const luxfer_stylize_report report = stylize.report();
     CHECK(report.is_complete == 1 && report.levels > 0);
-    const luxfer::Stylize::Level finest = stylize.level(report.levels - 1);
-    CHECK(finest.width == 48 && finest.height == 36 && finest.rounds > 0);
-    CHECK(stylize.round(report.levels - 1, 0).passes > 0 && stylize.pass(report.levels - 1, 0, 0).coverage > 0);
     stylize.update(artwork, all).wait();
     CHECK(has_size(stylize.image(LUXFER_STYLIZE_IMAGE_SOURCES), 48, 36, 2));
 

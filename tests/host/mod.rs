@@ -73,3 +73,15 @@ pub fn scene(context: *mut luxfer_context) -> *mut luxfer_scene {
     assert_eq!(unsafe { luxfer_scene_add_camera(scene, null(), null_mut()) }, LUXFER_OK);
     scene
 }
+
+/// Waits for a job; returns its outcome.
+pub unsafe fn wait(
+    job: *mut luxfer_job,
+    timeout_ms: i32,
+    progress: luxfer_progress_fn,
+    user: *mut std::ffi::c_void,
+) -> luxfer_status {
+    let mut outcome = LUXFER_UNKNOWN;
+    assert_eq!(unsafe { luxfer_job_wait(job, timeout_ms, progress, user, &mut outcome) }, LUXFER_OK);
+    outcome
+}

@@ -50,7 +50,7 @@ class Jobs(Case):
         with self.assertRaisesRegex(KeyError, "mine"):
             job.wait(progress)
         self.assertTrue(job.finished)
-        self.assertEqual(job.status, luxfer.types.Status.CANCELLED)
+        self.assertEqual(job.outcome, luxfer.types.Status.CANCELLED)
 
     def test_a_function_is_a_job(self):
         task = luxfer.Task(context(), lambda: luxfer.Image(context(), np.ones((4, 3, 1), np.float32)).size)
@@ -68,7 +68,7 @@ class Jobs(Case):
         task = luxfer.Task(context(), work)
         with self.assertRaisesRegex(KeyError, "mine"):
             task.wait()
-        self.assertEqual(task.status, luxfer.types.Status.UNKNOWN)
+        self.assertEqual(task.outcome, luxfer.types.Status.UNKNOWN)
         with self.assertRaises(errors.FileError):
             luxfer.Task(context(), lambda: luxfer.Image.load(context(), "/no/such/file.png")).wait()
 
@@ -95,7 +95,7 @@ class Jobs(Case):
                 job.wait(timeout=0.1)
             self.assertGreaterEqual(time.monotonic() - start, 0.1)
             self.assertFalse(job.finished)
-            self.assertEqual(job.status, luxfer.types.Status.NOT_READY)
+            self.assertEqual(job.outcome, luxfer.types.Status.NOT_READY)
         with self.assertRaises(errors.InvalidArgument):
             job.poll()
 
@@ -141,7 +141,7 @@ print("started", flush=True)
 try:
     job.wait()
 except KeyboardInterrupt:
-    print("interrupted", job.status.name, flush=True)
+    print("interrupted", job.outcome.name, flush=True)
 """
         taken = []
         while len(taken) < 3 and not (taken and min(taken) < 0.5):

@@ -71,7 +71,9 @@ Progress = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p, ctypes.c_double)
 for round in range({rounds}):
     job = pointer(lib.luxfer_render_start, render, None)
     progress = Progress(lambda user, fraction: calls.append(fraction) or len(calls) % 3 == 0)
-    assert lib.luxfer_job_wait(job, ctypes.c_int32(-1), progress, None) in (0, 6)
+    outcome = ctypes.c_int32()
+    assert lib.luxfer_job_wait(job, ctypes.c_int32(-1), progress, None, ctypes.byref(outcome)) == 0
+    assert outcome.value in (0, 6)
     assert lib.luxfer_job_cancel(job) == 0 and lib.luxfer_release(job) == 0
 for handle in (render, scene, context):
     assert lib.luxfer_release(handle) == 0

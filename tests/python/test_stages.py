@@ -88,10 +88,10 @@ class Transfer(Case):
         lights.run(channels=7)
         view.set_mask(plane.image())
         view.run(max_side=256)
-        emission = luxfer.Emission(
-            context(), view.image("unwarped"), view.warp(lights.image("confidence")), view.image("valid")
-        )
-        emission.set_photo(photo, view.report.to_photo)
+        unwarped, to_photo = view.image("unwarped"), view.report.to_photo
+        light = lights.image("confidence").warp(to_photo, *unwarped.size[:2])
+        emission = luxfer.Emission(context(), unwarped, light, view.image("valid"))
+        emission.set_photo(photo, to_photo)
         emission.run(width=128, height=96)
         lamps = emission.luminaires
         self.assertEqual(len(lamps), emission.report.luminaires)
@@ -198,7 +198,7 @@ class Transfer(Case):
             segment, strokes = luxfer.Segment(context(), photo), luxfer.Strokes(context(), 60, 40)
             describe(strokes)
             segment.set_strokes("plane", strokes)
-            strokes.clear()  # the stage has a copy
+            strokes.add("plane", (30.5, 35.5), 3, True)  # the stage has a copy
             masks.append(segment.run().image("mask").numpy()[..., 0])
             self.assertTrue((masks[-1][:20] == 1).all() and (masks[-1][20:] == 0).all())
         np.testing.assert_array_equal(*masks)
@@ -502,8 +502,6 @@ class Stylisation(Case):
         strangest = max(np.abs(colours - colour).max(1).min() for colour in copied)
         self.assertLess(strangest, 1e-6)
         self.assertTrue(((sources >= 0) & (sources < (64, 48))).all())
-        self.assertEqual(stylize.levels[-1].width, 64)
-        self.assertGreater(stylize.passes(0, 0)[-1].coverage, 0.5)
         self.assertGreater(stylize.report.used, 0)
 
     def test_the_same_light_gives_the_artwork_back(self):
@@ -514,20 +512,9 @@ class Stylisation(Case):
             stylize.add_guide(name, image, image)
         coordinates = np.stack(np.meshgrid(np.linspace(0, 1, 64), np.linspace(0, 1, 48)), -1)
         stylize.add_guide("place", coordinates, coordinates, 1000, "data")
-        stylize.run(preset="fast", mode="nearest")
+        stylize.run(preset="fast")
         error = np.abs(stylize.image().numpy() - artwork).mean()
         self.assertLess(error, 0.01)
-
-    def test_usage_can_be_a_cost(self):
-        stylize = luxfer.Stylize(context(), self.ball.demo_artwork("paint"))
-        stylize.add_guides(self.ball, self.still)
-        pictures, used = [], []
-        for mode, weight in (("nearest", 1), ("occurrence", 0), ("occurrence", 2)):
-            stylize.run(preset="fast", mode=mode, occurrence=weight)
-            pictures.append(stylize.image().numpy())
-            used.append(stylize.report.used)
-        np.testing.assert_array_equal(pictures[0], pictures[1])
-        self.assertGreater(used[2], used[0])
 
     def test_sequences_and_half_painted_pictures(self):
         artwork = self.ball.demo_artwork("pen")

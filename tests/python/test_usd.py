@@ -59,7 +59,7 @@ class Files(unittest.TestCase):
         uvs = [[0, 0], [1, 0], [1, 1], [0, 1]]
         scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], uvs=uvs, name="Lamp 1", material=material)
         scene.set_material_texture(material, "emission", scene.add_texture(gradient, "clamp"))
-        scene.set_emission(material, (900, 800, 700))
+        scene.set_material(material, emission=(900, 800, 700))
         for suffix in (".usda", ".usdc", ".usdz"):
             with self.subTest(suffix):
                 path = self.folder / f"scene{suffix}"

@@ -63,7 +63,7 @@ Result<T> get_value(luxfer_context *context, luxfer_status (*function)(Parameter
         status = function(arguments..., &value, sizeof value);
     else
         status = function(arguments..., &value);
-    return finish(context, status, value);
+    return to_result(context, status, value);
 }
 
 /// Calls a C function that copies a text; its last parameters are a buffer, its capacity and the capacity needed.
@@ -76,7 +76,7 @@ Result<std::string> get_text(luxfer_context *context, luxfer_status (*function)(
     if (status == LUXFER_OK)
         status = function(arguments..., text.data(), needed, nullptr);
     text.resize(std::strlen(text.c_str()));
-    return finish(context, status, std::move(text));
+    return to_result(context, status, std::move(text));
 }
 
 } // namespace detail
@@ -152,7 +152,7 @@ protected:
     /// Calls a C function on the object.
     template <class... Parameters, class... Arguments>
     Result<> call(luxfer_status (*function)(C *, Parameters...), Arguments... arguments) const {
-        return detail::finish(context_.get(), function(get(), arguments...));
+        return detail::to_result(context_.get(), function(get(), arguments...));
     }
 
     /// Calls a C function on the object whose last parameter becomes a new object of class T.
@@ -160,7 +160,7 @@ protected:
     Result<T> make(luxfer_status (*function)(Any *, Parameters...), Arguments... arguments) const {
         typename T::Object *made = nullptr;
         const luxfer_status status = function(get(), arguments..., &made);
-        return detail::finish(context_.get(), status, T(context_, made));
+        return detail::to_result(context_.get(), status, T(context_, made));
     }
 
     /// Calls a C function on the context whose last parameter becomes a new object of class T.
@@ -169,7 +169,7 @@ protected:
                              Arguments... arguments) {
         typename T::Object *made = nullptr;
         const luxfer_status status = function(context.get(), arguments..., &made);
-        return detail::finish(context.get(), status, T(context, made));
+        return detail::to_result(context.get(), status, T(context, made));
     }
 
     /// Calls a C function on the object whose last parameter becomes a plain value or a struct.
@@ -227,7 +227,7 @@ public:
     Result<ImageSize> size() const {
         ImageSize size;
         const luxfer_status status = luxfer_image_get_size(get(), &size.width, &size.height, &size.channels);
-        return detail::finish(context().get(), status, size);
+        return detail::to_result(context().get(), status, size);
     }
 
     /// The camera's metadata in the file of a loaded photo; 0 means unknown.
@@ -249,7 +249,7 @@ public:
         const ImageView view(samples, size.width, size.height, size.channels);
         if (status == LUXFER_OK)
             status = luxfer_image_read(get(), 0, &view);
-        return detail::finish(context().get(), status, std::move(samples));
+        return detail::to_result(context().get(), status, std::move(samples));
     }
 
     /// Creates an image whose pixel at p is the pixel of this image at to_source(p).
@@ -263,7 +263,7 @@ public:
 inline Result<std::array<double, 9>> homography_from_corners(const Context &context, Numbers<8> from, Numbers<8> to) {
     std::array<double, 9> map = {};
     const luxfer_status status = luxfer_homography_from_corners(context.get(), from.data(), to.data(), map.data());
-    return detail::finish(context.get(), status, map);
+    return detail::to_result(context.get(), status, map);
 }
 
 /// Receives the progress of a job, from 0 to 1, on the waiting thread; returns false to cancel the job. It may throw:
@@ -293,12 +293,13 @@ public:
         const luxfer_status status = luxfer_job_start(context.get(), &run_and_delete, kept.get(), &made);
         if (status == LUXFER_OK)
             static_cast<void>(kept.release());
-        return detail::finish(context.get(), status, Job(context, made));
+        return detail::to_result(context.get(), status, Job(context, made));
     }
 
     /// Waits until the job has ended; if it fails, this call fails with its error.
     Result<> wait(const Progress &progress = {}) const {
-        return detail::finish(context().get(), wait_c(get(), -1, progress));
+        const Waited waited = wait_c(get(), -1, progress);
+        return detail::to_result(context().get(), waited.error());
     }
 
     /// Waits at most for the given time. Returns true if the job has succeeded, false if it still runs; fails with the
@@ -306,23 +307,34 @@ public:
     Result<bool> wait_for(std::chrono::milliseconds time, const Progress &progress = {}) const {
         constexpr std::int64_t longest = std::numeric_limits<std::int32_t>::max();
         const auto limit = std::int32_t(std::min(std::max<std::int64_t>(time.count(), 0), longest));
-        const luxfer_status status = wait_c(get(), limit, progress);
-        if (status == LUXFER_NOT_READY)
+        const Waited waited = wait_c(get(), limit, progress);
+        if (waited.status == LUXFER_OK && waited.outcome == LUXFER_NOT_READY)
             return false;
-        return detail::finish(context().get(), status, true);
+        return detail::to_result(context().get(), waited.error(), true);
     }
 
     /// Gets the progress and the outcome without waiting; does not fail with the job's error.
     Result<JobState> poll() const {
         JobState state;
-        const luxfer_status status = luxfer_job_get_progress(get(), &state.fraction, &state.outcome);
-        return detail::finish(context().get(), status, state);
+        luxfer_status status = luxfer_job_get_progress(get(), &state.fraction);
+        if (status == LUXFER_OK)
+            status = luxfer_job_wait(get(), 0, nullptr, nullptr, &state.outcome);
+        if (state.outcome == LUXFER_OK)
+            state.fraction = 1; // it may have succeeded since the first call
+        return detail::to_result(context().get(), status, state);
     }
 
     /// Asks the job to end early, from any thread; returns at once.
     Result<> cancel() const { return call(luxfer_job_cancel); }
 
 private:
+    // The status of luxfer_job_wait, and the outcome of the job that it gives.
+    struct Waited {
+        luxfer_status status = LUXFER_OK, outcome = LUXFER_NOT_READY;
+
+        luxfer_status error() const noexcept { return status != LUXFER_OK ? status : outcome; }
+    };
+
     struct Listener {
         const Progress &progress;
         detail::Caught caught;
@@ -339,13 +351,12 @@ private:
     }
 
     // Calls luxfer_job_wait with a C++ progress function.
-    static luxfer_status wait_c(luxfer_job *job, std::int32_t timeout_ms, const Progress &progress) {
-        if (!progress)
-            return luxfer_job_wait(job, timeout_ms, nullptr, nullptr);
+    static Waited wait_c(luxfer_job *job, std::int32_t timeout_ms, const Progress &progress) {
+        Waited waited;
         Listener listener = {progress, {}};
-        const luxfer_status status = luxfer_job_wait(job, timeout_ms, tell, &listener);
+        waited.status = luxfer_job_wait(job, timeout_ms, progress ? tell : nullptr, &listener, &waited.outcome);
         listener.caught.rethrow();
-        return status;
+        return waited;
     }
 };
 

@@ -29,7 +29,7 @@ public:
 
     /// Adds a goal: the mean radiance that a mesh should have, in cd/m²; quantity is a LUXFER_QUANTITY_ value.
     Result<> add_mesh(std::uint32_t mesh, luxfer_quantity quantity, Rgb target, double weight = 1) const {
-        return call(luxfer_lamps_add_mesh, mesh, quantity, target.red, target.green, target.blue, weight);
+        return call(luxfer_lamps_add_mesh, mesh, quantity, target.data(), weight);
     }
 
     /// Adds a goal: the mean illuminance that a calculation grid should have, in lux.
@@ -38,9 +38,11 @@ public:
     }
 
     /// Makes a goal a limit, by one LUXFER_CONSTRAINT_ value for all channels, or one for each channel.
-    Result<> set_constraint(std::uint32_t goal, luxfer_constraint constraint) const { return set_constraint(goal, constraint, constraint, constraint); }
-    Result<> set_constraint(std::uint32_t goal, luxfer_constraint red, luxfer_constraint green, luxfer_constraint blue) const {
-        return call(luxfer_lamps_set_constraint, goal, red, green, blue);
+    Result<> set_constraint(std::uint32_t goal, luxfer_constraint constraint) const {
+        return set_constraint(goal, {constraint, constraint, constraint});
+    }
+    Result<> set_constraint(std::uint32_t goal, const std::array<luxfer_constraint, 3> &constraint) const {
+        return call(luxfer_lamps_set_constraint, goal, constraint.data());
     }
 
     /// Sets the dimming levels of the lamps' drivers, as factors of the emission; empty means continuous dimming.
@@ -103,12 +105,11 @@ public:
 
     /// Solves for the factor of a texture that gives the target a mean radiance, in cd/m².
     Result<luxfer_relight_report> solve(const Image &texture, Rgb target) const {
-        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), nullptr, target.red, target.green,
-                                            target.blue);
+        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), nullptr, target.data());
     }
     Result<luxfer_relight_report> solve(const Image &texture, Numbers<9> placement, Rgb target) const {
-        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), placement.data(), target.red,
-                                            target.green, target.blue);
+        return value<luxfer_relight_report>(luxfer_importance_solve, texture.get(), placement.data(),
+                                            target.data());
     }
 
     /// Starts a job that finds the best placement of a texture in cd/m².
@@ -154,7 +155,7 @@ inline Result<std::uint32_t> add_luminaire(const Scene &scene, const Distributio
                                            const luxfer_luminaire_params &params = LuminaireParams()) {
     std::uint32_t index = 0;
     const luxfer_status status = luxfer_scene_add_luminaire(scene.get(), distribution.get(), &params, &index);
-    return detail::finish(scene.context().get(), status, index);
+    return detail::to_result(scene.context().get(), status, index);
 }
 
 /// Finds the bodies of the lamps that a mask marks, numbered from the top. If `view` is empty, the camera is that of
@@ -170,7 +171,7 @@ inline Result<std::vector<luxfer_pendant>> find_pendants(const Context &context,
         context.get(), photo.get(), mask.get(), view.get(), places, suspensions.size(), &params, lamps.data(),
         sizeof(luxfer_pendant), lamps.size(), &count);
     lamps.resize(count);
-    return detail::finish(context.get(), status, std::move(lamps));
+    return detail::to_result(context.get(), status, std::move(lamps));
 }
 
 /// The meshes and the material that add_pendants has created.
@@ -188,7 +189,7 @@ inline Result<PlacedPendants> add_pendants(const Scene &scene, const luxfer_pend
     const luxfer_status status =
         luxfer_scene_add_pendants(scene.get(), &pendant, tops, places.size(), diameter, luminance,
                                   &placed.first_mesh, &placed.material);
-    return detail::finish(scene.context().get(), status, placed);
+    return detail::to_result(scene.context().get(), status, placed);
 }
 
 /// The correlated colour temperature in kelvin, and the signed distance Duv from the blackbody locus.
@@ -196,11 +197,11 @@ struct ColourTemperature {
     double kelvin, duv;
 };
 
-inline Result<ColourTemperature> colour_temperature(const Context &context, double red, double green, double blue) {
+inline Result<ColourTemperature> colour_temperature(const Context &context, const std::array<double, 3> &rgb) {
     ColourTemperature found = {};
     const luxfer_status status =
-        luxfer_colour_to_temperature(context.get(), red, green, blue, &found.kelvin, &found.duv);
-    return detail::finish(context.get(), status, found);
+        luxfer_colour_to_temperature(context.get(), rgb.data(), &found.kelvin, &found.duv);
+    return detail::to_result(context.get(), status, found);
 }
 
 /// The linear colour, with luminance 1, of a colour temperature.
@@ -208,7 +209,7 @@ inline Result<std::array<double, 3>> colour_of_temperature(const Context &contex
     std::array<double, 3> rgb = {};
     const luxfer_status status =
         luxfer_temperature_to_colour(context.get(), temperature.kelvin, temperature.duv, rgb.data());
-    return detail::finish(context.get(), status, rgb);
+    return detail::to_result(context.get(), status, rgb);
 }
 
 /// The unified glare rating of each observer in a scene, from its luminaires.
@@ -217,7 +218,7 @@ inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span
     std::vector<luxfer_observer_glare> ratings(observers.size());
     const luxfer_status status =
         luxfer_scene_get_glare(scene.get(), observers.data(), observers.size(), 0, samples, seed, ratings.data(), 0);
-    return detail::finish(scene.context().get(), status, std::move(ratings));
+    return detail::to_result(scene.context().get(), status, std::move(ratings));
 }
 
 /// The unified glare rating of a luminance image. Pixels above `threshold` (cd/m²) are glare sources; 0 means five
@@ -231,7 +232,7 @@ inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, doubl
 inline Result<Image> false_colour(const Image &image, const luxfer_false_colour_params &params = FalseColourParams()) {
     luxfer_image *shown = nullptr;
     const luxfer_status status = luxfer_image_false_colour(image.get(), &params, &shown);
-    return detail::finish(image.context().get(), status, Image(image.context(), shown));
+    return detail::to_result(image.context().get(), status, Image(image.context(), shown));
 }
 
 /// A colour mixed from primaries, and their drive levels.
@@ -249,7 +250,7 @@ inline Result<Mixture> mix_primaries(const Context &context, const std::vector<s
     const luxfer_status status =
         luxfer_mix_primaries(context.get(), flat.data(), primaries.size(), max_drive, colour.data(),
                              mixture.drives.data(), &mixture.light, sizeof mixture.light);
-    return detail::finish(context.get(), status, std::move(mixture));
+    return detail::to_result(context.get(), status, std::move(mixture));
 }
 
 /// Finds the blackbody light that brings the mean radiance of a target nearest to a given one.
@@ -262,16 +263,12 @@ inline Result<luxfer_temperature_fit> fit_temperature(const Context &context, st
 inline Result<std::uint32_t> preset_count(const Context &context) {
     std::uint32_t count = 0;
     const luxfer_status status = luxfer_preset_get_count(context.get(), &count);
-    return detail::finish(context.get(), status, count);
+    return detail::to_result(context.get(), status, count);
 }
 
 /// The requirements of EN 12464-1 for a kind of room.
 inline Result<luxfer_preset> preset(const Context &context, std::uint32_t index) {
     return detail::get_value<luxfer_preset>(context.get(), luxfer_preset_get, context.get(), index);
-}
-
-inline Result<std::string> preset_name(const Context &context, std::uint32_t index) {
-    return detail::get_text(context.get(), luxfer_preset_get_name, context.get(), index);
 }
 
 } // namespace luxfer

@@ -34,9 +34,6 @@ public:
     /// Gets an image of the results; `kind` is a LUXFER_RECTIFY_ value.
     Result<Image> image(luxfer_rectify_image kind) const { return make<Image>(luxfer_rectify_get_image, kind); }
 
-    /// Unwarps another image of the photo's size by the homography of the plane.
-    Result<Image> warp(const Image &source) const { return make<Image>(luxfer_rectify_warp, source.get()); }
-
     Result<luxfer_rectify_report> report() const { return value<luxfer_rectify_report>(luxfer_rectify_get_report); }
 
     /// Reasons to doubt the camera, and the plane if it has been unwarped.
@@ -62,7 +59,7 @@ public:
         Strokes strokes(drawing.context(), made);
         if (status == LUXFER_OK)
             status = luxfer_strokes_add_image(made, drawing.get());
-        return detail::finish(drawing.context().get(), status, std::move(strokes));
+        return detail::to_result(drawing.context().get(), status, std::move(strokes));
     }
 
     /// Adds a stroke along a polyline: points holds x and y of each point, in pixels, and radius is in pixels; phase
@@ -78,9 +75,6 @@ public:
 
     /// Adds the strokes that a text describes.
     Result<> add(Text description) const { return call(luxfer_strokes_add_text, description.get()); }
-
-    /// Removes all strokes.
-    Result<> clear() const { return call(luxfer_strokes_clear); }
 };
 
 /// The features of each pixel of a photo, for segmentation. See luxfer_features.
@@ -213,7 +207,7 @@ public:
     Result<std::array<double, 2>> corner(std::uint32_t luminaire, std::uint32_t corner) const {
         std::array<double, 2> point = {};
         const luxfer_status status = luxfer_emission_get_corner(get(), luminaire, corner, &point[0], &point[1]);
-        return detail::finish(context().get(), status, point);
+        return detail::to_result(context().get(), status, point);
     }
 };
 

@@ -79,10 +79,7 @@ public:
 
     Result<std::uint32_t> layer_count() const { return value<std::uint32_t>(luxfer_render_get_layer_count); }
     Result<std::string> layer_name(std::uint32_t index) const { return text(luxfer_render_get_layer_name, index); }
-    Result<std::uint32_t> find_layer(Text name) const {
-        return value<std::uint32_t>(luxfer_render_find_layer, name.get());
-    }
-    Result<Image> layer(std::uint32_t index) const { return make<Image>(luxfer_render_get_layer, index); }
+    Result<Image> layer(Text name) const { return make<Image>(luxfer_render_get_layer, name.get()); }
 
     /// Writes the picture and all layers into one file.
     Result<> write_exr(Text path) const { return call(luxfer_render_write_exr, path.get()); }
@@ -134,13 +131,11 @@ public:
     }
 
     /// Sets the mean radiance that the surface should have, in cd/m².
-    Result<> set_target(Rgb target) const {
-        return call(luxfer_relight_set_target, target.red, target.green, target.blue);
-    }
+    Result<> set_target(Rgb target) const { return call(luxfer_relight_set_target, target.data()); }
 
     /// Makes the target a limit, by a LUXFER_CONSTRAINT_ value for each channel.
-    Result<> set_constraint(luxfer_constraint red, luxfer_constraint green, luxfer_constraint blue) const {
-        return call(luxfer_relight_set_constraint, red, green, blue);
+    Result<> set_constraint(const std::array<luxfer_constraint, 3> &constraint) const {
+        return call(luxfer_relight_set_constraint, constraint.data());
     }
 
     Result<Job> start(const luxfer_relight_params &params = RelightParams()) const {

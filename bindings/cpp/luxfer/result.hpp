@@ -106,15 +106,15 @@ template <class T>
     throw error;
 }
 
-/// Checks the status of a call: throws unless it is LUXFER_OK.
-inline void finish(luxfer_context *context, luxfer_status status) {
+/// Converts the status of a call, and its value, to a Result: throws unless the status is LUXFER_OK.
+inline void to_result(luxfer_context *context, luxfer_status status) {
     if (status != LUXFER_OK)
         throw error_of(context, status);
 }
 
 template <class T>
-T finish(luxfer_context *context, luxfer_status status, T value) {
-    finish(context, status);
+T to_result(luxfer_context *context, luxfer_status status, T value) {
+    to_result(context, status);
     return value;
 }
 
@@ -163,13 +163,13 @@ Result<T> fail(Error error) {
     return error;
 }
 
-/// Checks the status of a call: an error unless it is LUXFER_OK.
-inline Result<> finish(luxfer_context *context, luxfer_status status) {
+/// Converts the status of a call, and its value, to a Result: an error unless the status is LUXFER_OK.
+inline Result<> to_result(luxfer_context *context, luxfer_status status) {
     return status == LUXFER_OK ? Result<>() : Result<>(error_of(context, status));
 }
 
 template <class T>
-Result<T> finish(luxfer_context *context, luxfer_status status, T value) {
+Result<T> to_result(luxfer_context *context, luxfer_status status, T value) {
     return status == LUXFER_OK ? Result<T>(std::move(value)) : Result<T>(error_of(context, status));
 }
 

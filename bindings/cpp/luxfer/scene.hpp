@@ -77,7 +77,7 @@ public:
     Result<std::array<double, 3>> origin() const {
         std::array<double, 3> at = {};
         const luxfer_status status = luxfer_scene_get_origin(get(), &at[0], &at[1], &at[2]);
-        return detail::finish(context().get(), status, at);
+        return detail::to_result(context().get(), status, at);
     }
 
     /// Warnings about the scene's file: an implausible size, and features that are not rendered.
@@ -99,7 +99,7 @@ public:
         Sink sink = {writer, {}};
         const luxfer_status status = luxfer_scene_export_memory(get(), take, &sink);
         sink.caught.rethrow();
-        return detail::finish(context().get(), status);
+        return detail::to_result(context().get(), status);
     }
 
     // Parts of a scene.
@@ -151,17 +151,12 @@ public:
 
     /// Sets an environment of uniform radiance, in cd/m².
     Result<> set_environment(Rgb light) const {
-        return call(luxfer_scene_set_environment, nullptr, light.red, light.green, light.blue);
+        return call(luxfer_scene_set_environment, nullptr, light.data());
     }
 
     /// Sets an environment from an equirectangular image, multiplied by scale.
     Result<> set_environment(const Image &image, Rgb scale) const {
-        return call(luxfer_scene_set_environment, image.get(), scale.red, scale.green, scale.blue);
-    }
-
-    /// Sets the emission of a material, in cd/m².
-    Result<> set_emission(std::uint32_t material, Rgb emission) const {
-        return call(luxfer_scene_set_emission, material, emission.red, emission.green, emission.blue);
+        return call(luxfer_scene_set_environment, image.get(), scale.data());
     }
 
     // Surfaces.
@@ -175,9 +170,8 @@ public:
     Result<PlacedEmission> place_emission(Text name, const Image &texture, Rgb scale) const {
         PlacedEmission placed;
         const luxfer_status status =
-            luxfer_scene_place_emission(get(), name.get(), texture.get(), scale.red, scale.green, scale.blue, &placed.mesh,
-                                        &placed.material);
-        return detail::finish(context().get(), status, placed);
+            luxfer_scene_place_emission(get(), name.get(), texture.get(), scale.data(), &placed.mesh, &placed.material);
+        return detail::to_result(context().get(), status, placed);
     }
 
     // Queries.

@@ -108,24 +108,6 @@ public:
     }
 
     Result<luxfer_stylize_report> report() const { return value<luxfer_stylize_report>(luxfer_stylize_get_report); }
-
-    /// The size of a pyramid level in pixels, and the number of its rounds.
-    struct Level {
-        std::uint32_t width = 0, height = 0, rounds = 0;
-    };
-
-    /// Gets a pyramid level; level 0 is the coarsest.
-    Result<Level> level(std::uint32_t index) const {
-        Level level;
-        const luxfer_status status = luxfer_stylize_get_level(get(), index, &level.width, &level.height, &level.rounds);
-        return detail::finish(context().get(), status, level);
-    }
-    Result<luxfer_stylize_round> round(std::uint32_t level, std::uint32_t index) const {
-        return value<luxfer_stylize_round>(luxfer_stylize_get_round, level, index);
-    }
-    Result<luxfer_stylize_pass> pass(std::uint32_t level, std::uint32_t round, std::uint32_t index) const {
-        return value<luxfer_stylize_pass>(luxfer_stylize_get_pass, level, round, index);
-    }
 };
 
 /// A sheet that an artist prints and paints over, with marks by which a photo of it is aligned. See
@@ -136,7 +118,7 @@ public:
     static Result<Image> print(const Image &picture, const luxfer_sheet_params &params = SheetParams()) {
         luxfer_image *sheet = nullptr;
         const luxfer_status status = luxfer_sheet_print(picture.get(), &params, &sheet);
-        return detail::finish(picture.context().get(), status, Image(picture.context(), sheet));
+        return detail::to_result(picture.context().get(), status, Image(picture.context(), sheet));
     }
 
     /// The artwork from a photo of the painted sheet, and the quality of the alignment.
@@ -152,7 +134,7 @@ public:
         luxfer_sheet_report report = {};
         const luxfer_status status =
             luxfer_sheet_align(photo.get(), width, height, &params, &artwork, &report, sizeof report);
-        return detail::finish(photo.context().get(), status, Aligned{Image(photo.context(), artwork), report});
+        return detail::to_result(photo.context().get(), status, Aligned{Image(photo.context(), artwork), report});
     }
 };
 

@@ -62,10 +62,8 @@ private:
     const T *data_;
 };
 
-/// A colour, or an amount of light for each channel.
-struct Rgb {
-    float red, green, blue;
-};
+/// A colour, or an amount of light for each channel: red, green, blue.
+using Rgb = std::array<float, 3>;
 
 /// A versioned struct of the C header, filled with the library's defaults. It derives from the C struct: set the
 /// fields, which the C header documents. (If the initialisation fails, the size stays 0, and calls refuse the struct.)

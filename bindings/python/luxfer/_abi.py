@@ -68,6 +68,8 @@ LUXFER_FILE_COLOUR_STATED = 2
 LUXFER_FILE_COLOUR_CONVERTED = 3
 LUXFER_FILE_COLOUR_UNCONVERTED = 4
 LUXFER_FILE_COLOUR_DATA = 5
+LUXFER_DEPTH_ALONG_Z = 0
+LUXFER_DEPTH_ALONG_RAY = 1
 LUXFER_PHASE_PLANE = 0
 LUXFER_PHASE_LIGHTS = 1
 LUXFER_LUMINAIRE_FACES = 0
@@ -138,8 +140,6 @@ LUXFER_FOCAL_FROM_METADATA = 3
 LUXFER_FOCAL_FROM_LAMPS = 4
 LUXFER_RECTIFY_UNWARPED = 0
 LUXFER_RECTIFY_VALID = 1
-LUXFER_DEPTH_ALONG_Z = 0
-LUXFER_DEPTH_ALONG_RAY = 1
 LUXFER_FEATURES_CHANNELS = 0
 LUXFER_FEATURES_DEPTH_CONFIDENCE = 1
 LUXFER_FEATURES_NETWORK_DEPTH = 2
@@ -287,12 +287,6 @@ LUXFER_STYLIZE_FULL = 0
 LUXFER_STYLIZE_FAST = 1
 LUXFER_STYLIZE_PREVIEW = 2
 LUXFER_STYLIZE_PAPER = 3
-LUXFER_STYLIZE_MODE_BUDGET = 0
-LUXFER_STYLIZE_MODE_UNIFORM = 1
-LUXFER_STYLIZE_MODE_NEAREST = 2
-LUXFER_STYLIZE_MODE_GREEDY = 3
-LUXFER_STYLIZE_MODE_LIT_SPHERE = 4
-LUXFER_STYLIZE_MODE_OCCURRENCE = 5
 LUXFER_STYLIZE_SEARCH_PATCHMATCH = 0
 LUXFER_STYLIZE_SEARCH_KD_TREE = 1
 LUXFER_STYLIZE_VOTE_PLAIN = 0
@@ -1356,6 +1350,7 @@ class luxfer_preset(Structure):
         ("rendering", c_double),
         ("walls", c_double),
         ("ceiling", c_double),
+        ("name", c_char_p),
     ]
     result = types.Preset
 
@@ -1433,12 +1428,13 @@ class luxfer_stylize_params(Structure):
 
     _fields_ = [
         ("struct_size", c_uint32),
-        ("mode", c_int32),
         ("search", c_int32),
         ("patch", c_uint32),
         ("guide_weight", c_float),
+        ("coarse_guides", c_float),
         ("levels", c_uint32),
         ("iterations", c_uint32),
+        ("coarse_iterations", c_uint32),
         ("finest_iterations", c_uint32),
         ("polish", c_uint32),
         ("search_iterations", c_uint32),
@@ -1452,13 +1448,10 @@ class luxfer_stylize_params(Structure):
         ("keep_for_update", c_uint32),
         ("coherence", c_float),
         ("match_appearance", c_float),
-        ("seed", c_uint64),
-        ("coarse_guides", c_float),
-        ("coarse_iterations", c_uint32),
-        ("occurrence", c_float),
         ("reserved", c_uint32),
+        ("seed", c_uint64),
     ]
-    enumerations: dict[str, type] = {"mode": types.StylizeMode, "search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
+    enumerations: dict[str, type] = {"search": types.StylizeSearch, "vote": types.StylizeVote, "final_vote": types.StylizeVote}
     struct_type = LUXFER_STRUCT_STYLIZE_PARAMS
 
 
@@ -1481,30 +1474,6 @@ class luxfer_stylize_report(Structure):
         ("unblended_share", c_double),
     ]
     result = types.StylizeReport
-
-
-class luxfer_stylize_round(Structure):
-    """One round (EM iteration) on a level: matching, then voting."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("passes", c_uint32),
-        ("energy", c_double),
-    ]
-    result = types.StylizeRound
-
-
-class luxfer_stylize_pass(Structure):
-    """One matching pass under the error budget, in StylizeMode.BUDGET."""
-
-    _fields_ = [
-        ("struct_size", c_uint32),
-        ("reserved", c_uint32),
-        ("knee", c_double),
-        ("coverage", c_double),
-        ("new_matches", c_uint64),
-    ]
-    result = types.StylizePass
 
 
 class luxfer_sheet_params(Structure):
@@ -1612,19 +1581,17 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_strokes_add": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
     "luxfer_strokes_add_image": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("drawing", POINTER(luxfer_image))]),
     "luxfer_strokes_add_text": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("description", c_char_p)]),
-    "luxfer_strokes_clear": (c_int32, [("strokes", POINTER(luxfer_strokes))]),
-    "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p)]),
-    "luxfer_job_get_progress": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double)), ("outcome", POINTER(c_int32))]),
+    "luxfer_job_wait": (c_int32, [("job", POINTER(luxfer_job)), ("timeout_ms", c_int32), ("progress", luxfer_progress_fn), ("user", c_void_p), ("outcome", POINTER(c_int32))]),
+    "luxfer_job_get_progress": (c_int32, [("job", POINTER(luxfer_job)), ("fraction", POINTER(c_double))]),
     "luxfer_job_cancel": (c_int32, [("job", POINTER(luxfer_job))]),
     "luxfer_job_start": (c_int32, [("context", POINTER(luxfer_context)), ("work", luxfer_work_fn), ("user", c_void_p), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_scene_create": (c_int32, [("context", POINTER(luxfer_context)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_export": (c_int32, [("scene", POINTER(luxfer_scene)), ("path", c_char_p)]),
     "luxfer_scene_export_memory": (c_int32, [("scene", POINTER(luxfer_scene)), ("write", luxfer_write_fn), ("user", c_void_p)]),
     "luxfer_scene_get_counts": (c_int32, [("scene", POINTER(luxfer_scene)), ("counts", POINTER(luxfer_scene_counts)), ("size", c_size_t)]),
-    "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
-    "luxfer_scene_set_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("red", c_float), ("green", c_float), ("blue", c_float)]),
+    "luxfer_scene_set_environment": (c_int32, [("scene", POINTER(luxfer_scene)), ("image", POINTER(luxfer_image)), ("rgb", POINTER(c_float))]),
     "luxfer_scene_find_surface": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("found", POINTER(luxfer_surface)), ("size", c_size_t)]),
-    "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("red", c_float), ("green", c_float), ("blue", c_float), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
+    "luxfer_scene_place_emission": (c_int32, [("scene", POINTER(luxfer_scene)), ("name", c_char_p), ("texture", POINTER(luxfer_image)), ("rgb", POINTER(c_float)), ("mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_scene_load": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_load_memory": (c_int32, [("context", POINTER(luxfer_context)), ("data", c_void_p), ("size", c_size_t), ("base_path", c_char_p), ("params", POINTER(luxfer_scene_load_params)), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_scene_get_origin": (c_int32, [("scene", POINTER(luxfer_scene)), ("x", POINTER(c_double)), ("y", POINTER(c_double)), ("z", POINTER(c_double))]),
@@ -1670,8 +1637,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_render_set_aovs": (c_int32, [("render", POINTER(luxfer_render)), ("flags", c_uint32)]),
     "luxfer_render_get_layer_count": (c_int32, [("render", POINTER(luxfer_render)), ("count", POINTER(c_uint32))]),
     "luxfer_render_get_layer_name": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
-    "luxfer_render_find_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("index", POINTER(c_uint32))]),
-    "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("index", c_uint32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_render_get_layer": (c_int32, [("render", POINTER(luxfer_render)), ("name", c_char_p), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_render_write_exr": (c_int32, [("render", POINTER(luxfer_render)), ("path", c_char_p)]),
     "luxfer_homography_from_corners": (c_int32, [("context", POINTER(luxfer_context)), ("from", POINTER(c_double)), ("to", POINTER(c_double)), ("homography", POINTER(c_double))]),
     "luxfer_image_warp": (c_int32, [("source", POINTER(luxfer_image)), ("to_source", POINTER(c_double)), ("width", c_uint32), ("height", c_uint32), ("warped", POINTER(POINTER(luxfer_image)))]),
@@ -1680,7 +1646,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_rectify_set_mask": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("mask", POINTER(luxfer_image))]),
     "luxfer_rectify_start": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("params", POINTER(luxfer_rectify_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_rectify_warp": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("source", POINTER(luxfer_image)), ("warped", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
     "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
     "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),
@@ -1712,8 +1677,8 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_emission_render_tile": (c_int32, [("emission", POINTER(luxfer_emission)), ("x", c_uint32), ("y", c_uint32), ("width", c_uint32), ("height", c_uint32), ("tile", POINTER(POINTER(luxfer_image)))]),
     "luxfer_relight_create": (c_int32, [("context", POINTER(luxfer_context)), ("relight", POINTER(POINTER(luxfer_relight)))]),
     "luxfer_relight_set_scene": (c_int32, [("relight", POINTER(luxfer_relight)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32), ("mesh", c_uint32)]),
-    "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_float), ("green", c_float), ("blue", c_float)]),
-    "luxfer_relight_set_constraint": (c_int32, [("relight", POINTER(luxfer_relight)), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
+    "luxfer_relight_set_target": (c_int32, [("relight", POINTER(luxfer_relight)), ("rgb", POINTER(c_float))]),
+    "luxfer_relight_set_constraint": (c_int32, [("relight", POINTER(luxfer_relight)), ("constraint", POINTER(c_int32))]),
     "luxfer_relight_start": (c_int32, [("relight", POINTER(luxfer_relight)), ("params", POINTER(luxfer_relight_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_relight_get_report": (c_int32, [("relight", POINTER(luxfer_relight)), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
     "luxfer_transfer_create": (c_int32, [("context", POINTER(luxfer_context)), ("transfer", POINTER(POINTER(luxfer_transfer)))]),
@@ -1750,9 +1715,9 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_lamps_create": (c_int32, [("context", POINTER(luxfer_context)), ("lamps", POINTER(POINTER(luxfer_lamps)))]),
     "luxfer_lamps_set_scene": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("scene", POINTER(luxfer_scene)), ("material", c_uint32)]),
     "luxfer_lamps_start": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("params", POINTER(luxfer_lamps_params)), ("job", POINTER(POINTER(luxfer_job)))]),
-    "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("red", c_float), ("green", c_float), ("blue", c_float), ("weight", c_double)]),
+    "luxfer_lamps_add_mesh": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("mesh", c_uint32), ("quantity", c_int32), ("rgb", POINTER(c_float)), ("weight", c_double)]),
     "luxfer_lamps_add_grid": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("grid", POINTER(luxfer_illuminance_grid)), ("lux", c_float), ("weight", c_double)]),
-    "luxfer_lamps_set_constraint": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("red", c_int32), ("green", c_int32), ("blue", c_int32)]),
+    "luxfer_lamps_set_constraint": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("goal", c_uint32), ("constraint", POINTER(c_int32))]),
     "luxfer_lamps_set_levels": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("levels", POINTER(c_double)), ("count", c_size_t)]),
     "luxfer_lamps_clear_goals": (c_int32, [("lamps", POINTER(luxfer_lamps))]),
     "luxfer_lamps_get_report": (c_int32, [("lamps", POINTER(luxfer_lamps)), ("report", POINTER(luxfer_lamps_report)), ("size", c_size_t)]),
@@ -1766,19 +1731,18 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_importance_start": (c_int32, [("importance", POINTER(luxfer_importance)), ("params", POINTER(luxfer_importance_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_importance_get_image": (c_int32, [("importance", POINTER(luxfer_importance)), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_importance_respond": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("report", POINTER(luxfer_importance_report)), ("size", c_size_t)]),
-    "luxfer_importance_solve": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("red", c_float), ("green", c_float), ("blue", c_float), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
+    "luxfer_importance_solve": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("placement", POINTER(c_double)), ("rgb", POINTER(c_float)), ("report", POINTER(luxfer_relight_report)), ("size", c_size_t)]),
     "luxfer_importance_start_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("texture", POINTER(luxfer_image)), ("params", POINTER(luxfer_placement_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_importance_get_placement": (c_int32, [("importance", POINTER(luxfer_importance)), ("placement", POINTER(luxfer_placement)), ("size", c_size_t)]),
-    "luxfer_colour_to_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("red", c_double), ("green", c_double), ("blue", c_double), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
+    "luxfer_colour_to_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("rgb", POINTER(c_double)), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
     "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
     "luxfer_scene_get_glare": (c_int32, [("scene", POINTER(luxfer_scene)), ("observers", POINTER(luxfer_observer)), ("count", c_size_t), ("observer_stride", c_size_t), ("samples", c_uint32), ("seed", c_uint64), ("ratings", POINTER(luxfer_observer_glare)), ("rating_stride", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_size_t), ("max_drive", c_double), ("colour", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
+    "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_size_t), ("max_drive", c_double), ("rgb", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),
     "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),
     "luxfer_preset_get": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("preset", POINTER(luxfer_preset)), ("size", c_size_t)]),
-    "luxfer_preset_get_name": (c_int32, [("context", POINTER(luxfer_context)), ("index", c_uint32), ("buffer", c_char_p), ("capacity", c_size_t), ("needed", POINTER(c_size_t))]),
     "luxfer_pendants_find": (c_int32, [("context", POINTER(luxfer_context)), ("photo", POINTER(luxfer_image)), ("mask", POINTER(luxfer_image)), ("view", POINTER(luxfer_rectify)), ("suspensions", POINTER(c_double)), ("suspension_count", c_size_t), ("params", POINTER(luxfer_pendants_params)), ("pendants", POINTER(luxfer_pendant)), ("size", c_size_t), ("capacity", c_size_t), ("count", POINTER(c_size_t))]),
     "luxfer_scene_add_pendants": (c_int32, [("scene", POINTER(luxfer_scene)), ("pendant", POINTER(luxfer_pendant)), ("places", POINTER(c_double)), ("count", c_size_t), ("diameter", c_float), ("luminance", c_float), ("first_mesh", POINTER(c_uint32)), ("material", POINTER(c_uint32))]),
     "luxfer_guides_create": (c_int32, [("context", POINTER(luxfer_context)), ("guides", POINTER(POINTER(luxfer_guides)))]),
@@ -1800,9 +1764,6 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_stylize_set_painted": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("painted", POINTER(luxfer_image))]),
     "luxfer_stylize_get_image": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_stylize_get_report": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("report", POINTER(luxfer_stylize_report)), ("size", c_size_t)]),
-    "luxfer_stylize_get_level": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("rounds", POINTER(c_uint32))]),
-    "luxfer_stylize_get_round": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("index", c_uint32), ("round", POINTER(luxfer_stylize_round)), ("size", c_size_t)]),
-    "luxfer_stylize_get_pass": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("level", c_uint32), ("round", c_uint32), ("index", c_uint32), ("pass", POINTER(luxfer_stylize_pass)), ("size", c_size_t)]),
     "luxfer_sheet_print": (c_int32, [("picture", POINTER(luxfer_image)), ("params", POINTER(luxfer_sheet_params)), ("sheet", POINTER(POINTER(luxfer_image)))]),
     "luxfer_sheet_align": (c_int32, [("photo", POINTER(luxfer_image)), ("width", c_uint32), ("height", c_uint32), ("params", POINTER(luxfer_sheet_params)), ("artwork", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_sheet_report)), ("size", c_size_t)]),
     "luxfer_plan_create": (c_int32, [("context", POINTER(luxfer_context)), ("plan", POINTER(POINTER(luxfer_plan)))]),

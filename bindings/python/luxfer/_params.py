@@ -48,10 +48,16 @@ def member(kind: type[E], value: E | str | int) -> E:
         raise ValueError(f"{value} is no {kind.__name__}: there are {listed}") from None
 
 
-def per_channel(kind: type[E], values: E | str | int | Sequence[E | str | int]) -> tuple[E, E, E]:
-    """Members for red, green and blue, from one value for all channels or one for each."""
+def per_channel(kind: type[E], values: E | str | int | Sequence[E | str | int]) -> Any:
+    """The C array of the members for red, green and blue, from one value for all channels or one for each."""
     red, green, blue = (values,) * 3 if isinstance(values, (str, int)) else values
-    return member(kind, red), member(kind, green), member(kind, blue)
+    return (ctypes.c_int32 * 3)(member(kind, red), member(kind, green), member(kind, blue))
+
+
+def rgb(values: Sequence[float]) -> Any:
+    """A colour as the C array of its three channels."""
+    red, green, blue = (float(v) for v in values)
+    return (ctypes.c_float * 3)(red, green, blue)
 
 
 def is_array(kind: type) -> bool:

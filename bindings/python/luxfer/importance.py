@@ -65,8 +65,8 @@ class Importance(StageBase):
         self, texture: ImageLike, radiance: Sequence[float], placement: Sequence[float] | None = None
     ) -> RelightReport:
         """Solves for the factor of a texture that gives the target a mean radiance, in cd/m² per channel."""
-        image, (red, green, blue) = image_of(self._context, texture), (float(v) for v in radiance)
-        out = self._read("solve", _abi.luxfer_relight_report, image, _nine(placement), red, green, blue)
+        image, wanted = image_of(self._context, texture), _params.rgb(radiance)
+        out = self._read("solve", _abi.luxfer_relight_report, image, _nine(placement), wanted)
         return cast(RelightReport, out)
 
     def start_placement(self, texture: ImageLike, **params: Unpack[PlacementParams]) -> Job[Importance]:

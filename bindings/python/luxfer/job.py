@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from . import _abi
 from ._handle import Handle, call
-from ._library import library
 from ._pointers import POINTER
 from .errors import Error, error
 from .types import Status
@@ -57,15 +56,12 @@ class Job(Handle, Generic[T]):
         try:
             while True:
                 left = SLICE_MS if end is None else max(0, min(SLICE_MS, round(1000 * (end - time.monotonic()))))
-                status = library.luxfer_job_wait(self.handle, left, NO_PROGRESS, None)
-                if status != Status.NOT_READY:
+                outcome = self._wait(left)
+                if outcome != Status.NOT_READY:
                     break
-                fraction, finished = self.poll()
-                if finished:
-                    continue  # it has ended since the wait; the next wait returns its status
                 if end is not None and time.monotonic() >= end:
                     break
-                fraction = min(fraction, 1 - 2.0**-52)  # only success is exactly 1
+                fraction = min(self._progress(), 1 - 2.0**-52)  # only success is exactly 1
                 if progress is not None and fraction > last_reported:
                     last_reported = fraction
                     if progress(fraction) is False:
@@ -73,8 +69,10 @@ class Job(Handle, Generic[T]):
         except BaseException:
             self._stop()
             raise
-        if status != Status.OK:
-            raise error(status, self._context.last_error())
+        if outcome == Status.NOT_READY:
+            raise error(outcome, f"the job still runs after {timeout} seconds; wait for it again")
+        if outcome != Status.OK:
+            raise error(outcome, self._context.last_error())
         if progress is not None:
             progress(1.0)
         return self._result()
@@ -87,28 +85,35 @@ class Job(Handle, Generic[T]):
         if not self._pointer:
             return
         self.cancel()
-        while not self.poll()[1]:
+        while not self.finished:
             time.sleep(0.002)
 
     def poll(self) -> tuple[float, bool]:
         """The finished share, and whether the job has ended, with or without success."""
-        fraction, outcome = self._progress()
-        return fraction, outcome != Status.NOT_READY
+        fraction, outcome = self._progress(), self.outcome
+        # It may have succeeded since the first call.
+        return 1.0 if outcome == Status.OK else fraction, outcome != Status.NOT_READY
 
-    def _progress(self) -> tuple[float, Status]:
-        fraction, outcome = ctypes.c_double(), ctypes.c_int32()
-        self._call("get_progress", fraction, outcome)
-        return fraction.value, Status(outcome.value)
+    def _progress(self) -> float:
+        fraction = ctypes.c_double()
+        self._call("get_progress", fraction)
+        return fraction.value
+
+    def _wait(self, milliseconds: int) -> Status:
+        """Waits for at most a time; returns the outcome."""
+        outcome = ctypes.c_int32()
+        self._call("wait", milliseconds, NO_PROGRESS, None, outcome)
+        return Status(outcome.value)
 
     @property
     def finished(self) -> bool:
         """Whether the job has ended, with or without success."""
-        return self.poll()[1]
+        return self.outcome != Status.NOT_READY
 
     @property
-    def status(self) -> Status:
+    def outcome(self) -> Status:
         """The status with which the job has ended; Status.NOT_READY while it runs."""
-        return self._progress()[1]
+        return self._wait(0)
 
     def cancel(self) -> None:
         """Asks the job to end early, which takes at most about 100 ms. Any thread may call it."""

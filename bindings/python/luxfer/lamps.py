@@ -43,8 +43,7 @@ class Lamps(StageBase):
         self, mesh: int, radiance: Sequence[float], quantity: Quantity | str = Quantity.OUTGOING, weight: float = 1
     ) -> None:
         """Adds a goal: the mean radiance that a mesh should have, in cd/m² per channel."""
-        red, green, blue = (float(v) for v in radiance)
-        self._call("add_mesh", mesh, _params.member(Quantity, quantity), red, green, blue, weight)
+        self._call("add_mesh", mesh, _params.member(Quantity, quantity), _params.rgb(radiance), weight)
 
     def add_grid(self, grid: IlluminanceGrid | Mapping[str, Any], lux: float, weight: float = 1) -> None:
         """Adds a goal: the mean illuminance that a calculation grid should have. Its origin, across and down (in
@@ -53,7 +52,7 @@ class Lamps(StageBase):
 
     def set_constraint(self, goal: int, constraint: Constraint | str | Sequence[Constraint | str]) -> None:
         """Makes a goal a limit, "at-least" or "at-most", in all channels or separately in each."""
-        self._call("set_constraint", goal, *_params.per_channel(Constraint, constraint))
+        self._call("set_constraint", goal, _params.per_channel(Constraint, constraint))
 
     def set_levels(self, levels: Sequence[float]) -> None:
         """Sets the dimming levels of the lamps' drivers, as factors of the emission; empty means continuous

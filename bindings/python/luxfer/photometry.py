@@ -76,8 +76,7 @@ def colour_temperature(context: Context, colour: Sequence[float]) -> tuple[float
     0.003
     """
     kelvin, duv = ctypes.c_double(), ctypes.c_double()
-    red, green, blue = (float(v) for v in colour)
-    call(context, "luxfer_colour_to_temperature", context, red, green, blue, kelvin, duv)
+    call(context, "luxfer_colour_to_temperature", context, _three(colour), kelvin, duv)
     return kelvin.value, duv.value
 
 
@@ -138,9 +137,8 @@ def presets(context: Context) -> dict[str, Preset]:
     for index in range(count.value):
         report = _abi.luxfer_preset()
         call(context, "luxfer_preset_get", context, index, report, ctypes.sizeof(report))
-        name = ctypes.create_string_buffer(200)
-        call(context, "luxfer_preset_get_name", context, index, name, len(name), None)
-        found[name.value.decode()] = cast(Preset, _params.report(report))
+        row = cast(Preset, _params.report(report))
+        found[row.name] = row
     return found
 
 

@@ -57,10 +57,6 @@ class Rectify(StageBase):
         """An image of the results: "unwarped" or "valid"."""
         return self._get_image("get_image", _params.member(RectifyImage, which))
 
-    def warp(self, source: ImageLike) -> Image:
-        """Unwarps another image of the photo's size by the homography of the plane."""
-        return self._get_image("warp", image_of(self._context, source))
-
     @property
     def report(self) -> RectifyReport:
         """The results and their errors."""

@@ -38,12 +38,11 @@ class Relight(StageBase):
 
     def set_target(self, radiance: Sequence[float]) -> None:
         """Sets the mean radiance that the mesh should have, in cd/m² per channel."""
-        red, green, blue = (float(v) for v in radiance)
-        self._call("set_target", red, green, blue)
+        self._call("set_target", _params.rgb(radiance))
 
     def set_constraint(self, constraint: Constraint | str | Sequence[Constraint | str]) -> None:
         """Makes the target a limit, "at-least" or "at-most", in all channels or separately in each."""
-        self._call("set_constraint", *_params.per_channel(Constraint, constraint))
+        self._call("set_constraint", _params.per_channel(Constraint, constraint))
 
     def start(self, **params: Unpack[RelightParams]) -> Job[Relight]:
         """Starts this stage as a job; the settings are keyword arguments."""

@@ -120,13 +120,11 @@ class Render(StageBase):
         count = ctypes.c_uint32()
         self._call("get_layer_count", count)
         names = [self._get_text("get_layer_name", i) for i in range(count.value)]
-        return {name: self._get_image("get_layer", i) for i, name in enumerate(names)}
+        return {name: self.layer(name) for name in names}
 
     def layer(self, name: str) -> Image:
         """The layer of that name."""
-        index = ctypes.c_uint32()
-        self._call("find_layer", _params.text(name, "name"), index)
-        return self._get_image("get_layer", index)
+        return self._get_image("get_layer", _params.text(name, "name"))
 
     def write_exr(self, path: str | os.PathLike[str]) -> None:
         """Writes the image and all layers into one OpenEXR file; Blender and Nuke recognise the names of its

@@ -230,11 +230,7 @@ class Scene(Handle):
         """Sets an environment of uniform radiance colour, in cd/m²; or, with image, an equirectangular image
         multiplied by colour."""
         sky = None if image is None else image_of(self._context, image)
-        self._call("set_environment", sky, *_colour(colour))
-
-    def set_emission(self, material: int, colour: Sequence[float]) -> None:
-        """Sets the emission of a material, in cd/m²; it multiplies the emission texture."""
-        self._call("set_emission", material, *_colour(colour))
+        self._call("set_environment", sky, _params.rgb(colour))
 
     def find_surface(self, name: str) -> Surface:
         """Finds the planar surface of an object or material that faces the room."""
@@ -245,7 +241,7 @@ class Scene(Handle):
         returns the indices of the mesh and of its material."""
         mesh, material = ctypes.c_uint32(), ctypes.c_uint32()
         image = image_of(self._context, texture)
-        self._call("place_emission", _params.text(name, "name"), image, *_colour(scale), mesh, material)
+        self._call("place_emission", _params.text(name, "name"), image, _params.rgb(scale), mesh, material)
         return mesh.value, material.value
 
     def add_pendants(
@@ -379,8 +375,3 @@ def _rows(values: ArrayLike, width: int, dtype: Any, name: str) -> NDArray[Any]:
         raise ValueError(f"{name} has the shape (n, {width}), not {out.shape}")
     packed = out.strides[1] == out.itemsize and (len(out) < 2 or out.strides[0] >= width * out.itemsize)
     return out if packed else np.ascontiguousarray(out)
-
-
-def _colour(values: Sequence[float]) -> tuple[float, float, float]:
-    red, green, blue = (float(v) for v in values)
-    return red, green, blue

@@ -65,10 +65,6 @@ class Strokes(Handle):
         "light 3 310.5 30 320 31"."""
         self._call("add_text", _params.text(description, "description"))
 
-    def clear(self) -> None:
-        """Removes all strokes."""
-        self._call("clear")
-
 
 def set_strokes(stage: Handle, strokes: Strokes | ImageLike | None, *arguments: Any) -> None:
     """Calls luxfer_<stage>_set_strokes; converts a drawing to strokes first. The strokes are the last argument."""

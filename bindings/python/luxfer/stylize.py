@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 from . import _abi, _params
 from ._library import library
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
-from .types import GuideRange, GuidesWith, StylizeImage, StylizePass, StylizePreset, StylizeReport, StylizeRound
+from .types import GuideRange, GuidesWith, StylizeImage, StylizePreset, StylizeReport
 from .warning import StageWarning, warnings_of
 
 if TYPE_CHECKING:
@@ -20,15 +19,6 @@ if TYPE_CHECKING:
     from .guides import Guides
     from .image import ImageLike
     from .types import StylizeParams
-
-
-@dataclass(frozen=True)
-class Level:
-    """A pyramid level of a stylisation, with its rounds."""
-
-    width: int
-    height: int
-    rounds: tuple[StylizeRound, ...]
 
 
 class Stylize(StageBase):
@@ -138,23 +128,6 @@ class Stylize(StageBase):
     def warnings(self) -> list[StageWarning]:
         """Reasons to doubt the motion of the latest result."""
         return warnings_of(self)
-
-    @property
-    def levels(self) -> list[Level]:
-        """The pyramid levels with their rounds, the coarsest first."""
-        out = []
-        for level in range(self.report.levels):
-            numbers = [ctypes.c_uint32() for _ in range(3)]
-            self._call("get_level", level, *numbers)
-            width, height, rounds = (n.value for n in numbers)
-            read: Any = (self._read("get_round", _abi.luxfer_stylize_round, level, i) for i in range(rounds))
-            out.append(Level(width, height, tuple(read)))
-        return out
-
-    def passes(self, level: int, round: int) -> list[StylizePass]:
-        """The matching passes under the error budget in a round."""
-        count = self.levels[level].rounds[round].passes
-        return [cast(StylizePass, self._read("get_pass", _abi.luxfer_stylize_pass, level, round, i)) for i in range(count)]
 
 
 def preset(which: StylizePreset | str) -> StylizeParams:

@@ -88,6 +88,15 @@ class FileColour(IntEnum):
     """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
 
 
+class DepthKind(IntEnum):
+    """Quantity that a depth map measures."""
+
+    ALONG_Z = 0
+    """Distance along the viewing axis."""
+    ALONG_RAY = 1
+    """Distance along the ray of each pixel."""
+
+
 class Phase(IntEnum):
     """The mask for which strokes are painted."""
 
@@ -293,15 +302,6 @@ class FocalSource(IntEnum):
     FROM_LAMPS = 4
     """Estimated so that the lamps have equal sizes and shapes in the frontal view of their plane (lighting
     transfer only)."""
-
-
-class DepthKind(IntEnum):
-    """Quantity that a depth map measures."""
-
-    ALONG_Z = 0
-    """Distance along the viewing axis."""
-    ALONG_RAY = 1
-    """Distance along the ray of each pixel."""
 
 
 class Normalisation(IntEnum):
@@ -799,27 +799,6 @@ class GuidesImage(IntEnum):
     CAUSTICS = 8
     """Caustics: light that glossy surfaces, mirrors or clear panes (one or more of them) cast onto a diffuse
     surface, which reflects it to the camera (LS+DE)."""
-
-
-class StylizeMode(IntEnum):
-    """How exemplar patches are assigned to target patches."""
-
-    BUDGET = 0
-    """Exemplar patches are assigned to target patches under an error budget (Fiser et al. 2016), the
-    default."""
-    UNIFORM = 1
-    """Every exemplar patch is used equally often (Jamriska et al. 2015)."""
-    NEAREST = 2
-    """Each target patch takes its nearest exemplar patch (Wexler et al. 2007)."""
-    GREEDY = 3
-    """One pass in scan order, in which each pixel takes its nearest match or continues the match of a neighbour
-    (Hertzmann et al. 2001); runs on one thread."""
-    LIT_SPHERE = 4
-    """Each pixel takes the exemplar pixel with the nearest guides; with normals as guides this is the Lit
-    Sphere (Sloan et al. 2001)."""
-    OCCURRENCE = 5
-    """Each target patch takes its nearest exemplar patch, with a cost for patches that are used often (Kaspar
-    et al. 2015): see the field occurrence. Runs on one thread, and with StylizeSearch.PATCHMATCH only."""
 
 
 class StylizeSearch(IntEnum):
@@ -1558,7 +1537,8 @@ class RectifyReport:
     is_unwarped: int
     """1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0."""
     to_photo: tuple[float, ...]
-    """Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row."""
+    """Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp
+    unwarps other images of the photo's size, such as the confidence of the lights."""
     corners: tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
     """Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise."""
     corner_errors: tuple[float, float, float, float]
@@ -2362,6 +2342,8 @@ class Preset:
     """Minimum mean illuminance of the walls, in lux; 0 if there is no requirement."""
     ceiling: float
     """Minimum mean illuminance of the ceiling, in lux; 0 if there is no requirement."""
+    name: str
+    """The name, such as "office: filing, copying", in UTF-8; valid as long as the library is loaded."""
 
 
 class PendantsParams(TypedDict, total=False):
@@ -2473,8 +2455,6 @@ class GuidesParams(TypedDict, total=False):
 class StylizeParams(TypedDict, total=False):
     """Settings of a stylisation. The defaults stated here belong to StylizePreset.FULL."""
 
-    mode: StylizeMode | str | int
-    """Assignment of patches: StylizeMode; default StylizeMode.BUDGET."""
     search: StylizeSearch | str | int
     """Search for nearest patches: StylizeSearch; default StylizeSearch.PATCHMATCH."""
     patch: int
@@ -2483,18 +2463,23 @@ class StylizeParams(TypedDict, total=False):
     guide_weight: float
     """Weight of all guides together, relative to the weight of all colour channels of the artwork together, in
     [0, 1e6]; default 2."""
+    coarse_guides: float
+    """Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a
+    larger factor the picture follows the guides more closely, with smaller connected pieces of the artwork."""
     levels: int
     """Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16];
     default 6. The coarsest level is at least 5 patches wide and high."""
     iterations: int
     """Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then
     voting."""
+    coarse_iterations: int
+    """Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper
+    has 6."""
     finest_iterations: int
     """Rounds (EM iterations) on the finest level, in [1, 100]; default 1."""
     polish: int
-    """Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In
-    StylizeMode.BUDGET each target patch takes its nearest match in these rounds, without the error budget. In
-    other modes these are additional rounds of that mode."""
+    """Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In these
+    rounds each target patch takes its nearest match, without the error budget."""
     search_iterations: int
     """Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1."""
     coverage: float
@@ -2532,18 +2517,6 @@ class StylizeParams(TypedDict, total=False):
     target's light guides, in [0, 1]; 0, the default: not at all."""
     seed: int
     """Seed of the search; default 1."""
-    coarse_guides: float
-    """Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a
-    larger factor the picture follows the guides more closely, with smaller connected pieces of the artwork."""
-    coarse_iterations: int
-    """Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper
-    has 6."""
-    occurrence: float
-    """Weight lambda of the penalty for patches that are used often, in StylizeMode.OCCURRENCE, in [0, 10]; with
-    0, the mode equals StylizeMode.NEAREST. Default 0.1, which Fiser et al. 2016 chose for their picture of this
-    method (their Fig. 10n). The penalty is added to the distance of a match (their Eq. 1), which is the
-    weighted sum of squared differences over the pixels of a patch, with channels in [0, 1]. A patch that is
-    used as often as the average has the penalty lambda."""
 
 
 @dataclass(frozen=True)
@@ -2554,7 +2527,7 @@ class StylizeReport:
     """1 if the run is complete; 0 if only some levels are finished: then all fields but levels, halvings and
     energy are 0."""
     levels: int
-    """Number of finished levels; see luxfer_stylize_get_level."""
+    """Number of finished resolution levels."""
     halvings: int
     """Number of times that the target's sides were halved to get the size of the picture."""
     patch: int
@@ -2578,30 +2551,6 @@ class StylizeReport:
     unblended_share: float
     """Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
     StylizeVote.ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it."""
-
-
-@dataclass(frozen=True)
-class StylizeRound:
-    """One round (EM iteration) on a level: matching, then voting."""
-
-    passes: int
-    """Number of matching passes under the error budget; see luxfer_stylize_get_pass."""
-    energy: float
-    """Energy after this round, as StylizeReport.energy. On all levels but the finest, all guides together have
-    the weight guide_weight * coarse_guides."""
-
-
-@dataclass(frozen=True)
-class StylizePass:
-    """One matching pass under the error budget, in StylizeMode.BUDGET."""
-
-    knee: float
-    """Share, in [0, 1], of the exemplar patches whose matching error lies before the knee, the point at which
-    the sorted errors begin to rise steeply. The sum of the errors before the knee is the error budget."""
-    coverage: float
-    """Share of the target with a match after this pass, in [0, 1]."""
-    new_matches: int
-    """Number of target patches that received a match in this pass."""
 
 
 class SheetParams(TypedDict, total=False):

@@ -208,7 +208,7 @@ class _Reader:
             self.scene.set_material_texture(index, "emission", texture)
             scale = glow.GetInput("scale").Get() if glow.GetInput("scale") else None
             if scale is not None:
-                self.scene.set_emission(index, tuple(scale)[:3])
+                self.scene.set_material(index, emission=tuple(scale)[:3])
         self.materials[key] = index
         return index
 

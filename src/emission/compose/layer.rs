@@ -8,7 +8,7 @@ use crate::emission::analysis::sites::Sites;
 use crate::emission::analysis::{Analysis, Choice};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::roles::Role;
-use crate::emission::lamps::design::Designs;
+use crate::emission::lamps::designs::Designs;
 use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::instances::{self, Rules};
 use crate::emission::lamps::luminaire::Luminaire;

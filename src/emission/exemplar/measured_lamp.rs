@@ -8,7 +8,7 @@ use glam::DVec2;
 
 /// Two lamps are of one kind if they differ along each axis by at most this share of the longer side, plus an allowance
 /// for measurement error and bloom. [judged on 20 photos]
-const MAX_SIDE_DIFFERENCE: f64 = 0.2;
+pub const MAX_SIDE_DIFFERENCE: f64 = 0.2;
 /// Allowances when sides of two lamps are compared, in photo pixels. `NOISE`: measurement error of a side. `BLOOM`:
 /// lengthening of a side by bloom. In unwarped pixels, bloom differs between the lamps if unwarping magnifies them
 /// differently. [judged on 20 photos]
@@ -17,7 +17,7 @@ const BLOOM: f64 = 10.0;
 /// A wider tolerance, for lamps that lie at one site of a lattice and are therefore probably of one kind.
 /// `MAX_SITE_DIFFERENCE`: maximum difference of a side, as a share of the longer one. `SITE_NOISE`: measurement error
 /// of each side, in photo pixels. [judged on 20 photos]
-const MAX_SITE_DIFFERENCE: f64 = 0.33;
+pub const MAX_SITE_DIFFERENCE: f64 = 0.33;
 const SITE_NOISE: f64 = 2.5;
 
 /// A lamp of the exemplar, as evidence for kinds of lamps and for a lattice. Position and size are in unwarped pixels.
@@ -65,6 +65,12 @@ impl MeasuredLamp {
     pub fn is_like(&self, other: &Self) -> bool {
         let blur = (self.blur + other.blur) * NOISE / 2.0 + (self.blur - other.blur).abs() * BLOOM;
         let slack = self.size.max(other.size) * MAX_SIDE_DIFFERENCE + blur;
+        (self.size - other.size).abs().cmple(slack).all()
+    }
+
+    /// Whether two lamps have equal sizes, apart from errors of measurement.
+    pub fn is_as_large(&self, other: &Self) -> bool {
+        let slack = self.size.max(other.size) * MAX_SIDE_DIFFERENCE + (self.blur + other.blur) * NOISE / 2.0;
         (self.size - other.size).abs().cmple(slack).all()
     }
 

@@ -5,6 +5,7 @@ pub mod bars;
 pub mod components;
 pub mod foreshortening;
 pub mod fragments;
+pub mod joins;
 pub mod measured_lamp;
 pub mod panes;
 pub mod roles;
@@ -14,7 +15,7 @@ use super::agreement::statistics::{Pattern, Statistics};
 use super::params::Input;
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
-use crate::image::{Image, try_collect, try_vec};
+use crate::image::{Image, colour, try_collect, try_vec};
 use crate::job::Job;
 use components::{Component, Components};
 use foreshortening::{LocalMap, MagnificationLimit};
@@ -44,6 +45,9 @@ pub struct Exemplar {
     pub roles: Vec<Role>,
     /// Number of photo pixels that show each component.
     pub photo_area: Vec<f64>,
+    /// Share of each component that is dark: darker than half of the component's median luminance. Dark are a thing in
+    /// front of the lamp, or a bar.
+    pub dark_share: Vec<f64>,
     /// Share of the pixels marked in `shown` that is lit.
     pub lit_share: f64,
     /// The map from unwarped pixels into the photo, if there is one.
@@ -73,6 +77,7 @@ impl Exemplar {
         let sources = Sources { image, light, components: &components, usable: &usable, shown: &shown };
         let working = Working::new(&sources, working_side, job)?;
 
+        let dark_share = dark_shares(&components, image)?;
         let lit = components.list.iter().map(|c| c.area).sum::<usize>();
         let lit_share = lit as f64 / shown.iter().filter(|&&s| s).count() as f64;
         Ok(Self {
@@ -82,6 +87,7 @@ impl Exemplar {
             components,
             roles,
             photo_area,
+            dark_share,
             lit_share,
             to_photo: input.photo.map(|p| p.1),
             working,
@@ -210,4 +216,19 @@ fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
 /// pixels.
 fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64> {
     components.list.iter().map(|c| c.area as f64 * LocalMap::new(to_photo, c.centre).area()).collect()
+}
+
+/// The share of each component's pixels that are darker than half of the component's median luminance.
+fn dark_shares(components: &Components, image: &Image) -> Result<Vec<f64>> {
+    let share = |(k, component): (usize, &Component)| {
+        let mut luminances = try_vec(component.area, 0f32)?;
+        let [left, top] = component.min;
+        let pixels = (top..=component.max[1]).flat_map(|y| (left..=component.max[0]).map(move |x| (x, y)));
+        let own = pixels.filter(|(x, y)| components.labels[y * image.width + x] as usize == k + 1);
+        luminances.iter_mut().zip(own).for_each(|(luminance, (x, y))| *luminance = colour::luminance(image.rgb(x, y)));
+        let (_, median, _) = luminances.select_nth_unstable_by(component.area / 2, f32::total_cmp);
+        let half = *median / 2.0;
+        Ok(luminances.iter().filter(|luminance| **luminance < half).count() as f64 / component.area as f64)
+    };
+    components.list.iter().enumerate().map(share).collect()
 }

@@ -20,7 +20,7 @@ const MIN_LIT_SHARE: f64 = 0.35;
 const MIN_RELATIVE_LUMINANCE: f32 = 0.5;
 /// A dark line inside a pane is a lead strip, and is filled, if its width is at most this share of the pane's side.
 /// [bench photos:real]
-const MAX_LEADING_SHARE: f64 = 0.06;
+pub const MAX_LEADING_SHARE: f64 = 0.06;
 
 /// Returns the light mask of the panes without the bars between them. `None` if the plane is not a luminous ceiling,
 /// or if the mask covers no bar.

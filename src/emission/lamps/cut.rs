@@ -4,7 +4,8 @@
 //! obliquely. It then cuts a rectangle to a triangle or a wedge, and few lamps have such shapes. So a cut lamp is drawn
 //! as the bounding rectangle of its visible part, unless the photo shows that this rectangle is partly dark.
 
-use super::design::{Design, Designs, Fitted, Shape};
+use super::design::{Design, Shape};
+use super::designs::{Designs, Fitted};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use crate::emission::exemplar::foreshortening::LocalMap;

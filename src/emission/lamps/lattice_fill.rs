@@ -8,7 +8,7 @@
 //! - A site that nearly always has a lamp in the photo gets one in every cell.
 //! - At any other site, the patch there decides whether there is a lamp. If there is one, it moves to the exact site.
 
-use super::design::Designs;
+use super::designs::Designs;
 use super::instance::Instance;
 use crate::emission::analysis::sites::{Site, Sites};
 use crate::emission::exemplar::Exemplar;

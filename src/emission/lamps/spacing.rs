@@ -3,7 +3,8 @@
 //! If the lamps of a photo do not lie exactly on a lattice, different patches may show one lamp at two nearly equal
 //! positions. One of these copies is dropped.
 
-use super::design::{Design, Designs};
+use super::design::Design;
+use super::designs::Designs;
 use super::instance::Instance;
 use crate::emission::exemplar::Exemplar;
 use glam::DVec2;

@@ -2,7 +2,7 @@
 //! or the pattern ends in view.
 
 use super::*;
-use crate::emission::lamps::design::Designs;
+use crate::emission::lamps::designs::Designs;
 use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::spacing;
 use crate::geometry::polygon;

@@ -72,7 +72,7 @@ class Lit:
         from ..photometry import colour_temperature
 
         emission = self.scene.material(self.material)["emission"]
-        self.scene.set_emission(self.material, [e * f for e, f in zip(emission, factors)])
+        self.scene.set_material(self.material, emission=[e * f for e, f in zip(emission, factors)])
         lamps = []
         for lamp in self.lamps:
             radiance = tuple(r * f for r, f in zip(lamp.radiance, factors))
@@ -105,9 +105,9 @@ class Lit:
         plane = above_floor(self.transfer.scene("unsolved"), self._ceiling(surface))
         emission = self.scene.material(self.material)["emission"]
         whole = measure(self.scene, plane, 0.25, 0.005, console).report.mean
-        self.scene.set_emission(self.material, (0, 0, 0))
+        self.scene.set_material(self.material, emission=(0, 0, 0))
         other = measure(self.scene, plane, 0.25, 0.005, console).report.mean if self._has_other_light() else 0.0
-        self.scene.set_emission(self.material, emission)
+        self.scene.set_material(self.material, emission=emission)
         if lux < other:
             raise failed(f"--lux is {lux:g}, but the scene's other lights alone give {other:.0f} lux on {plane.words}")
         if whole - other <= 1e-6 * whole:

@@ -1,0 +1,228 @@
+//! Discs that look long in the unwarped photo, because of bloom or because they protrude from the plane.
+
+use super::bloom::{BloomFit, MIN_BLOOM_LAMPS, common_side};
+use super::member::{MAX_ALIGNED_ANGLE, Member, principal};
+use crate::emission::exemplar::measured_lamp::MAX_SITE_DIFFERENCE;
+use glam::DVec2;
+
+/// Limits for discs that blur has elongated. [judged on 20 photos]
+/// - `MAX_SMEARED`: lamps with a larger mean area, in photo pixels, need other evidence ([`disc`]).
+/// - `MIN_SMEAR`: the long axis must exceed the short axis by this factor, both for the lamp and for a photo pixel in
+///   the unwarped photo.
+/// - `MIN_COS_ALONG`: minimum cosine of the angle between the long axes of the lamp and of the photo pixel.
+const MAX_SMEARED: f64 = 160.0;
+const MIN_SMEAR: f64 = 1.25;
+const MIN_COS_ALONG: f64 = 0.9;
+/// Let α be the angle of a lamp's long axis. Lamps count as elongated in one common direction if the mean of their unit
+/// vectors at the angles 2α is longer than this. The mean has length 1 if all axes are parallel. Lamps that are
+/// elongated along their own blur, but not in a common direction, are discs, whatever their size. [judged on 20 photos]
+const MIN_COMMON_DIRECTION: f64 = 0.93;
+
+/// Whether blur may have elongated a lamp: the lamp is elongated in the unwarped photo, a photo pixel is too, and their
+/// long axes differ by at most the angle with the cosine `min_cos`.
+fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
+    let [[short, x], [long, y]] = principal(lamp.moments);
+    let [[minor, u], [major, v]] = principal(lamp.inverse_map * lamp.inverse_map.transpose());
+    let along = DVec2::new(x, y).dot(DVec2::new(u, v)).abs();
+    long > MIN_SMEAR * short && major > MIN_SMEAR * minor && along > min_cos
+}
+
+/// Takes the lamps that protrude from the plane out of their kinds, and groups them anew by their widths.
+///
+/// Unwarping projects a body that hangs below the plane, and its glare, away from the foot of the perpendicular from
+/// the camera to the plane. It also stretches photo pixels in this direction. Protruding lamps therefore point away
+/// from one point, and the lower they hang, the longer they look. Kinds of lamps protrude if they point in this
+/// direction to within [`MAX_ALIGNED_ANGLE`], and if their lamps are not parallel. One lamp alone gives no evidence,
+/// nor do lamps in one line with the camera, such as a continuous row of tubes. Kinds that are as wide as one of these
+/// protrude as well if they point in this direction to within [`MIN_COS_ALONG`].
+pub fn take_protruding(kinds: &mut Vec<Vec<Member>>) -> Vec<Vec<Member>> {
+    let points_away = |kind: &Vec<Member>, min_cos: f64| kind.iter().all(|lamp| is_smeared(lamp, min_cos));
+    let certain: Vec<&Member> =
+        kinds.iter().filter(|kind| points_away(kind, MAX_ALIGNED_ANGLE.cos())).flatten().collect();
+    let turns: DVec2 = certain.iter().map(|lamp| double_angle(lamp)).sum();
+    // The mean of unit vectors at twice the angles, whose angles deviate by 2σ, has the length exp(-(2σ)² / 2).
+    let parallel = (-2.0 * MAX_ALIGNED_ANGLE.powi(2)).exp();
+    if certain.is_empty() || turns.length() > parallel * certain.len() as f64 {
+        return Vec::new();
+    }
+    let widths: Vec<f64> = certain.iter().map(|lamp| width(lamp).0).collect();
+    let is_as_wide = |lamp: &Member| widths.iter().any(|w| are_alike(*w, width(lamp).0));
+    let protrudes = |kind: &Vec<Member>| points_away(kind, MIN_COS_ALONG) && kind.iter().all(is_as_wide);
+    let (protruding, others): (Vec<_>, Vec<_>) = std::mem::take(kinds).into_iter().partition(protrudes);
+    *kinds = others;
+
+    let mut protruding: Vec<Member> = protruding.into_iter().flatten().collect();
+    protruding.sort_by(|a, b| width(b).0.total_cmp(&width(a).0));
+    let mut groups: Vec<Vec<Member>> = Vec::new();
+    for lamp in protruding {
+        match groups.last_mut().filter(|group| are_alike(width(&group[0]).0, width(&lamp).0)) {
+            Some(group) => group.push(lamp),
+            None => groups.push(vec![lamp]),
+        }
+    }
+    groups
+}
+
+/// Whether two widths may belong to lamps of one kind.
+fn are_alike(a: f64, b: f64) -> bool {
+    (a - b).abs() <= MAX_SITE_DIFFERENCE * a.max(b)
+}
+
+/// The common diameter of lamps that are as wide as they should be long, without bloom, in unwarped pixels.
+pub fn diameter(members: &[&Member]) -> Option<f64> {
+    common_side(members.iter().map(|lamp| width(lamp)))
+}
+
+/// The short diameter of a lamp, and the length of a photo pixel across it, in unwarped pixels.
+fn width(lamp: &Member) -> (f64, f64) {
+    let [[short, x], [_, y]] = principal(lamp.moments);
+    (4.0 * short, lamp.photo_pixel(DVec2::new(-y, x)))
+}
+
+/// The long diameter of a lamp, and the length of a photo pixel along it, in unwarped pixels.
+fn length(lamp: &Member) -> (f64, f64) {
+    let [[_, x], [long, y]] = principal(lamp.moments);
+    (4.0 * long, lamp.photo_pixel(DVec2::new(x, y)))
+}
+
+/// The unit vector at twice the angle of a lamp's long axis, the same for both directions of the axis.
+fn double_angle(lamp: &Member) -> DVec2 {
+    let [[_, x], [_, y]] = principal(lamp.moments);
+    DVec2::from_angle(2.0 * y.atan2(x))
+}
+
+/// Decides whether lamps are discs. Returns their diameter without bloom, in unwarped pixels; `None` if they are not
+/// discs. `are_round` states that an ellipse fits the lamps better than a rectangle.
+///
+/// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. At least
+/// [`MIN_BLOOM_LAMPS`] round lamps are discs if bloom explains their long and short sides ([`BloomFit::shown`]).
+/// Otherwise, lamps are discs if at least half of them, by weight, are elongated along their blur, and if one of these
+/// conditions holds as well:
+///
+/// - They are round. Lamps are rarely oval, but a disc looks oval if it blooms, or if its cover protrudes from the
+///   ceiling.
+/// - They are small in the photo.
+/// - They are not all elongated in one common direction.
+///
+/// The diameter of these lamps follows from their short sides if bloom does not explain the sides.
+pub fn disc(members: &[&Member], are_round: bool) -> Option<f64> {
+    let are_enough = members.len() >= MIN_BLOOM_LAMPS;
+    let sides = |lamp: &&Member| [width(lamp), length(lamp)];
+    let shown = are_enough.then(|| BloomFit::new(members.iter().flat_map(sides)).shown()).flatten();
+    if are_round && shown.is_some() {
+        return shown;
+    }
+    let total: f64 = members.iter().map(|m| m.weight).sum();
+    let mean_area = members.iter().map(|m| m.weight * m.weight).sum::<f64>() / total;
+    let smeared: f64 = members.iter().filter(|m| is_smeared(m, MIN_COS_ALONG)).map(|m| m.weight).sum();
+    let common_turn = members.iter().map(|m| double_angle(m) * m.weight).sum::<DVec2>().length() / total;
+    let are_unlike_ovals = are_round || mean_area <= MAX_SMEARED || common_turn <= MIN_COMMON_DIRECTION;
+    if smeared < 0.5 * total || !are_unlike_ovals {
+        return None;
+    }
+    shown.or_else(|| diameter(members))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::design::{Design, Shape};
+    use super::super::designs::fit;
+    use super::super::member::{polygon_moments, rectangle_angle};
+    use super::*;
+    use glam::{DMat2, Vec2Swizzles};
+
+    const DIAMETER: f64 = 20.0;
+    const DISC_BLOOM: f64 = 4.0;
+
+    /// A disc of [`DIAMETER`] that unwarping magnifies by `pixel` along y. Bloom of [`DISC_BLOOM`] photo pixels at each
+    /// edge makes it an ellipse.
+    fn bloomed_disc(component: usize, pixel: f64) -> Member {
+        let size = DVec2::new(DIAMETER + 2.0 * DISC_BLOOM, DIAMETER + 2.0 * DISC_BLOOM * pixel);
+        let outline = Design { shape: Shape::Ellipse, size, axis: DVec2::X }.outline(DVec2::new(100.0, 0.0));
+        let (area, centre, moments) = polygon_moments(&outline).unwrap();
+        Member {
+            component,
+            angle: rectangle_angle(&outline),
+            outline,
+            area,
+            centre,
+            moments,
+            weight: 1000.0,
+            blur: DVec2::new(1.0, pixel),
+            inverse_map: DMat2::from_diagonal(DVec2::new(1.0, pixel)),
+            is_clear: true,
+        }
+    }
+
+    /// A lamp of the same outline in a photo that unwarping magnifies along x instead of y.
+    fn with_blur_across(lamp: Member) -> Member {
+        Member { blur: lamp.blur.yx(), inverse_map: DMat2::from_diagonal(lamp.blur.yx()), ..lamp }
+    }
+
+    #[test]
+    fn discs_that_bloom_has_elongated_are_round_again() {
+        let lamps: Vec<Member> =
+            [1.2, 1.5, 1.9, 2.4].into_iter().enumerate().map(|(k, p)| bloomed_disc(k, p)).collect();
+        let design = fit(&lamps).unwrap();
+        assert_eq!(design.shape, Shape::Ellipse);
+        assert!((design.size - DIAMETER).abs().max_element() < 0.5, "{}", design.size);
+        // Ellipses that are elongated across the direction of their blur are not discs.
+        let turned: Vec<Member> = lamps.into_iter().map(with_blur_across).collect();
+        let design = fit(&turned).unwrap();
+        assert!(design.size.y > 1.15 * design.size.x, "{}", design.size);
+    }
+
+    #[test]
+    fn a_few_ovals_that_are_long_along_their_blur_are_discs() {
+        // Two lamps are too few to show their bloom, so the diameter of the discs is the short side of the ovals.
+        let lamps = || [2.5, 2.6].into_iter().enumerate().map(|(k, pixel)| bloomed_disc(k, pixel));
+        let design = fit(&lamps().collect::<Vec<_>>()).unwrap();
+        assert_eq!((design.shape, design.size.x), (Shape::Ellipse, design.size.y));
+        assert!((design.size.x / (DIAMETER + 2.0 * DISC_BLOOM) - 1.0).abs() < 0.1, "{}", design.size);
+        let design = fit(&lamps().map(with_blur_across).collect::<Vec<_>>()).unwrap();
+        assert!(design.size.y > 1.3 * design.size.x, "{}", design.size);
+    }
+
+    /// A lamp of the given sides at `angle`, at a place where unwarping stretches photo pixels towards `away`.
+    fn long_lamp(component: usize, size: DVec2, angle: f64, away: f64) -> Member {
+        let axis = DVec2::from_angle(angle);
+        let outline = Design { shape: Shape::Ellipse, size, axis }.outline(DVec2::new(100.0 * angle, 0.0));
+        let (area, centre, moments) = polygon_moments(&outline).unwrap();
+        let stretch = DMat2::from_angle(away) * DMat2::from_diagonal(DVec2::new(2.0, 1.0)) * DMat2::from_angle(-away);
+        Member {
+            component,
+            angle: rectangle_angle(&outline),
+            outline,
+            area,
+            centre,
+            moments,
+            weight: 300.0,
+            blur: DVec2::new(1.0, 2.0),
+            inverse_map: stretch,
+            is_clear: true,
+        }
+    }
+
+    #[test]
+    fn lamps_that_point_away_from_the_camera_protrude_and_parallel_lamps_do_not() {
+        let spot = |k: usize, length: f64, angle: f64| long_lamp(k, DVec2::new(length, 22.0), angle, angle + 0.03);
+        let spots = || [(90.0, 1.2), (120.0, 1.5), (70.0, 1.9)].into_iter().enumerate();
+        let mut kinds: Vec<Vec<Member>> = spots().map(|(k, (length, angle))| vec![spot(k, length, angle)]).collect();
+        // A spot whose direction is 15 degrees off, and a row of tubes, one of which lies in line with the camera.
+        kinds.push(vec![long_lamp(3, DVec2::new(60.0, 20.0), 1.4, 1.66)]);
+        kinds
+            .push([0.4, 0.9, 1.55].into_iter().map(|away| long_lamp(4, DVec2::new(140.0, 30.0), 1.57, away)).collect());
+        let protruding = take_protruding(&mut kinds);
+        assert_eq!(protruding.iter().map(Vec::len).collect::<Vec<_>>(), [4]);
+        assert_eq!(kinds.iter().map(Vec::len).collect::<Vec<_>>(), [3]);
+        let found = diameter(&protruding[0].iter().collect::<Vec<_>>()).unwrap();
+        assert!((found - 21.5).abs() < 1.0, "{found}");
+
+        // Lamps in one line with the camera, and a single lamp, give no evidence.
+        for angles in [vec![1.5, 1.5, 1.5], vec![1.2]] {
+            let mut kinds: Vec<Vec<Member>> = angles.into_iter().map(|angle| vec![spot(0, 90.0, angle)]).collect();
+            assert!(take_protruding(&mut kinds).is_empty());
+            assert!(!kinds.is_empty());
+        }
+    }
+}
