@@ -2,8 +2,9 @@
 //! Arguments select sections: time and quality of the presets (`presets`); the time of an update (`update`); time and
 //! memory up to 70 megapixels (`sizes`); comparison with plain EM and ebsynth (`baselines`); other methods in the same
 //! engine (`methods`); quality against time for every setting (`knobs`); the final votes on drawn styles and on pairs
-//! with a known truth (`votes`), and on sets that were set aside (`aside`); half-painted pictures (`autocomplete`)
-//! and exemplars with defects (`doubts`) of the demonstration scenes, which need no test data.
+//! with a known truth (`votes`), and on sets that were set aside (`aside`); half-painted pictures (`autocomplete`),
+//! exemplars with defects (`doubts`) and the direction of strokes (`directions`) of the demonstration scenes, which
+//! need no test data.
 //!
 //! Pictures are scored by two judges: `harness/judge.rs`, and `tools/stylit_judge.py` beside the test data, which sees
 //! images only. The script runs with `LUXFER_PYTHON`, `target/peers/judge` or `python3`, if it has numpy, scipy and
@@ -18,6 +19,8 @@
 mod autocomplete;
 #[path = "stylit/demonstration.rs"]
 mod demonstration;
+#[path = "stylit/directions.rs"]
+mod directions;
 #[path = "stylit/doubts.rs"]
 mod doubts;
 #[path = "stylit/fidelity.rs"]
@@ -58,6 +61,9 @@ fn main() {
     }
     if wants("doubts") {
         doubts::measure(&pool);
+    }
+    if wants("directions") {
+        directions::measure(&pool);
     }
     let pair = match Pair::load(1) {
         Ok(pair) => pair,

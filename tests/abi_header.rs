@@ -630,6 +630,6 @@ layouts! {
         finest_iterations polish search_iterations coverage passes settle seam vote final_vote preview keep_for_update
         coherence match_appearance reserved seed;
     luxfer_stylize_report: struct_size is_complete levels halvings patch max_uses energy used entropy guide_error
-        broken_source broken_target unblended_share;
+        broken_source broken_target unblended_share normals_weight;
     luxfer_fixture: struct_size position normal axis radiance kind size area flux cct duv;
 }

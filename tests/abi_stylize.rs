@@ -429,3 +429,58 @@ fn images_that_do_not_fit_each_other_end_the_job_with_a_message() {
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }
 }
+
+/// Guides of a demonstration scene.
+fn rendered(context: *mut luxfer_context, kind: luxfer_demo) -> *mut luxfer_guides {
+    let guides = made(|out| unsafe { luxfer_guides_create(context, out) });
+    let mut params = unsafe { std::mem::zeroed::<luxfer_guides_params>() };
+    unsafe {
+        let size = size_of_val(&params);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_GUIDES_PARAMS, (&raw mut params).cast(), size), LUXFER_OK);
+        (params.width, params.height, params.samples) = (400, 304, 8);
+        let scene = made(|out| luxfer_demo_create_scene(context, kind, out));
+        assert_eq!(luxfer_guides_set_scene(guides, scene), LUXFER_OK);
+        let job = made(|out| luxfer_guides_start(guides, &params, out));
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut(), null_mut()), LUXFER_OK, "{}", message(context));
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
+    }
+    guides
+}
+
+#[test]
+fn the_artwork_switches_the_normals_on_and_the_caller_overrules_it() {
+    let context = context(2);
+    let (ball, still) = (rendered(context, LUXFER_DEMO_SPHERE_ON_TABLE), rendered(context, LUXFER_DEMO_STILL_LIFE));
+    let params = luxfer_stylize_params { levels: 1, polish: 0, ..params() };
+    let painted = |style, extras, weight| {
+        let stylize = made(|out| unsafe { luxfer_stylize_create(context, out) });
+        let artwork = made(|out| unsafe { luxfer_demo_create_artwork(ball, style, out) });
+        unsafe {
+            assert_eq!(luxfer_stylize_set_artwork(stylize, artwork), LUXFER_OK);
+            assert_eq!(luxfer_stylize_add_guides(stylize, ball, still, extras, weight), LUXFER_OK);
+            assert_eq!(run(stylize, &params), LUXFER_OK, "{}", message(context));
+            let (used, picture) = (report(stylize).normals_weight, get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE));
+            let colours = pixels(picture).2;
+            for object in [stylize.cast::<c_void>(), artwork.cast(), picture.cast()] {
+                assert_eq!(luxfer_release(object), LUXFER_OK);
+            }
+            (used, colours)
+        }
+    };
+    let (decided, by_normals) = painted(LUXFER_ARTWORK_PEN, 0, 1.0);
+    assert!(decided > 0.0);
+    // The caller's weight counts, and the weight that the library has chosen gives the same picture.
+    let (given, same) = painted(LUXFER_ARTWORK_PEN, LUXFER_GUIDES_WITH_NORMALS, decided as f32);
+    assert!(given == decided && same == by_normals);
+    let (off, by_light) = painted(LUXFER_ARTWORK_PEN, LUXFER_GUIDES_WITH_NORMALS, 0.0);
+    assert!(off == 0.0 && by_light != by_normals);
+    // Dots have no direction.
+    assert_eq!(painted(LUXFER_ARTWORK_STIPPLE, 0, 1.0).0, 0.0);
+    unsafe {
+        for guides in [ball, still] {
+            assert_eq!(luxfer_release(guides.cast()), LUXFER_OK);
+        }
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
+}

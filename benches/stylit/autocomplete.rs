@@ -155,7 +155,7 @@ fn tone(picture: &Image, truth: &Image, painted: &Image) -> f64 {
 }
 
 /// Means over windows, in linear colour.
-fn smoothed(image: &Image) -> Vec<Vec3> {
+pub fn smoothed(image: &Image) -> Vec<Vec3> {
     let (width, height) = (image.width as isize, image.height as isize);
     let pass = |values: Vec<Vec3>, [dx, dy]: [isize; 2]| -> Vec<Vec3> {
         let at = |x: isize, y: isize| values[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize];

@@ -35,6 +35,17 @@ impl Plane {
         Self { width: self.width, values }
     }
 
+    /// Half the difference of the neighbours on both sides; the border's pixels repeat.
+    fn slope(&self, [dx, dy]: [isize; 2]) -> Self {
+        let (width, height) = (self.width as isize, (self.values.len() / self.width) as isize);
+        let at = |x: isize, y: isize| self.values[(y.clamp(0, height - 1) * width + x.clamp(0, width - 1)) as usize];
+        let slope = |i: isize| {
+            let (x, y) = (i % width, i / width);
+            0.5 * (at(x + dx, y + dy) - at(x - dx, y - dy))
+        };
+        Self { width: self.width, values: (0..width * height).map(slope).collect() }
+    }
+
     /// Gaussian blur; the border's pixels repeat.
     fn blurred(&self, sigma: f64) -> Self {
         let radius = (3.5 * sigma).ceil() as isize;
@@ -50,6 +61,38 @@ impl Plane {
             (0..width * height).map(|i| sum(i) / total).collect()
         };
         Self { width: self.width, values: pass(&pass(&self.values, [1, 0]), [0, 1]) }
+    }
+}
+
+/// Standard deviations, in pixels, of the Gaussians that smooth a picture before its gradients are taken, and the
+/// products of the gradients.
+const INNER: f64 = 1.0;
+const OUTER: f64 = 4.0;
+
+/// The local orientation of a picture by the structure tensor of its luminance.
+pub struct Orientation {
+    /// Direction across which the picture changes most, in radians modulo π.
+    pub angle: Vec<f64>,
+    /// 0 where all directions are alike, 1 where the picture changes in one direction only.
+    pub coherence: Vec<f64>,
+}
+
+impl Orientation {
+    pub fn of(picture: &Image) -> Self {
+        let plane = Plane::of(picture).blurred(INNER);
+        let [dx, dy] = [plane.slope([1, 0]), plane.slope([0, 1])];
+        let smooth = |a: &Plane, b: &Plane| a.map(b, |a, b| a * b).blurred(OUTER).values;
+        let (xx, xy, yy) = (smooth(&dx, &dx), smooth(&dx, &dy), smooth(&dy, &dy));
+        let pixels = || xx.iter().zip(&xy).zip(&yy).map(|((xx, xy), yy)| (xx - yy, 2.0 * xy, xx + yy));
+        let angle = pixels().map(|(difference, twice, _)| 0.5 * twice.atan2(difference)).collect();
+        let coherence = pixels().map(|(difference, twice, sum)| difference.hypot(twice) / (sum + f64::MIN_POSITIVE));
+        Self { angle, coherence: coherence.collect() }
+    }
+
+    /// Angle between the orientations of two pictures at a pixel, in degrees, in `[0, 90]`.
+    pub fn error(&self, truth: &Self, pixel: usize) -> f64 {
+        let difference = (self.angle[pixel] - truth.angle[pixel]).to_degrees().rem_euclid(180.0);
+        difference.min(180.0 - difference)
     }
 }
 

@@ -23,7 +23,7 @@ use super::stylize_params::{choice, luxfer_stylize_params};
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::guides::{self, Surfaces};
 use crate::image::Image;
-use crate::stylize::{self, Guide, MAX_CHANNELS, Range};
+use crate::stylize::{self, Guide, MAX_CHANNELS, NORMALS_WEIGHT, Range};
 use std::ffi::c_char;
 use std::sync::{Arc, Mutex};
 
@@ -41,7 +41,8 @@ pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
 /// to [0, 1].
 pub const LUXFER_GUIDE_DATA: luxfer_guide_range = 1;
 
-/// Flag of luxfer_stylize_add_guides: add the normals.
+/// Flag of luxfer_stylize_add_guides: add the normals. Without it, they are used if the strokes of the artwork follow
+/// the shapes.
 pub const LUXFER_GUIDES_WITH_NORMALS: u32 = 1;
 /// Flag of luxfer_stylize_add_guides: add the edges, for shapes finer than the brush strokes.
 pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
@@ -56,6 +57,8 @@ pub const LUXFER_GUIDES_WITH_CAUSTICS: u32 = 8;
 pub(super) struct Inputs {
     artwork: Option<Arc<Pixels>>,
     guides: Vec<Pair>,
+    /// The normals that luxfer_stylize_add_guides has added last; a guide with the name [`NORMALS`] replaces them.
+    normals: Option<Pair>,
     source_mask: Option<Arc<Pixels>>,
     target: Target,
     motion: Option<Arc<Pixels>>,
@@ -95,18 +98,28 @@ impl Inputs {
         Ok(())
     }
 
+    /// Returns the weight of the normals if the caller has added them as a guide.
+    fn given_normals(&self) -> Option<f32> {
+        self.guides.iter().find(|g| g.name == NORMALS).map(|g| g.weight)
+    }
+
     /// Calls `work` with the current inputs in the form that the stylisation takes, without a previous frame.
     pub(super) fn with_input<T>(&self, work: impl FnOnce(&stylize::Input) -> Result<T>) -> Result<T> {
         let guides: Vec<Guide> = self.guides.iter().map(Pair::guide).collect();
+        let normals = self.normals.as_ref().filter(|_| self.given_normals().is_none()).map(Pair::guide);
         let artwork = need(&self.artwork, "luxfer_stylize_set_artwork")?.image();
         let (target_mask, known) = match &self.target {
             Target::All => (None, None),
             Target::Within(mask, known) => (Some(mask.image()), known.as_ref().map(|k| k.image())),
         };
         let source_mask = self.source_mask.as_ref().map(|m| m.image());
-        work(&stylize::Input { source_mask, target_mask, known, ..stylize::Input::new(artwork, &guides) })
+        let input = stylize::Input::new(artwork, &guides);
+        work(&stylize::Input { normals, source_mask, target_mask, known, ..input })
     }
 }
+
+/// Name of the guide of normals.
+const NORMALS: &str = "normals";
 
 /// Adds a guide, or replaces the guide of the same name.
 fn add(guides: &mut Vec<Pair>, pair: Pair) -> Result<()> {
@@ -194,6 +207,11 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
 /// the 90th percentile of luminance over both scenes becomes 0.8. They have the names "full", "direct", "specular",
 /// "indirect" and "two bounces", and each has weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the
 /// guide "caustics", "normals", "edges" or "materials", each with weight extra_weight, in [0, 1e6].
+///
+/// If there is no guide of the name "normals", each job examines the artwork. If its strokes follow the shapes, the
+/// normals guide the picture too, so that its strokes follow the shapes of the target; see the field normals_weight of
+/// luxfer_stylize_report. In a sequence, the first frame decides. To overrule this, add the normals with a weight of
+/// your own by LUXFER_GUIDES_WITH_NORMALS or luxfer_stylize_add_guide; with weight 0 they are not used.
 /// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
 /// range.
 #[unsafe(no_mangle)]
@@ -223,20 +241,29 @@ pub unsafe extern "C" fn luxfer_stylize_add_guides(
             caustics: extras & LUXFER_GUIDES_WITH_CAUSTICS != 0,
         };
         let own = |image: Image| Pixels::counted(context, image.width, image.height, image.channels, || Ok(image));
-        let mut added = Vec::new();
-        for pair in guides::pairs(&source, &target, extras)? {
-            added.push(Pair {
+        let owned = |pair: guides::Pair, weight: f32| -> Result<Pair> {
+            Ok(Pair {
                 name: pair.name.to_string(),
                 source: own(pair.source)?,
                 target: own(pair.target)?,
-                weight: if pair.is_extra { extra_weight } else { 1.0 },
+                weight,
                 range: if pair.is_light { Range::Light } else { Range::Data },
-            });
+            })
+        };
+        let (mut added, mut normals) = (Vec::new(), None);
+        for pair in guides::pairs(&source, &target, guides::Extras { normals: true, ..extras })? {
+            if pair.name == NORMALS && !extras.normals {
+                normals = Some(owned(pair, NORMALS_WEIGHT)?);
+            } else {
+                let weight = if pair.is_extra { extra_weight } else { 1.0 };
+                added.push(owned(pair, weight)?);
+            }
         }
         stage.change(|inputs| {
             let mut all = inputs.guides.clone();
             added.into_iter().try_for_each(|pair| add(&mut all, pair))?;
             inputs.guides = all;
+            inputs.normals = normals;
             inputs.surfaces = Some(target.surfaces.clone());
             Ok(())
         })
@@ -249,6 +276,7 @@ pub unsafe extern "C" fn luxfer_stylize_clear_guides(stylize: *mut luxfer_styliz
     enter(stylize, |stage| {
         stage.change(|inputs| {
             inputs.guides.clear();
+            inputs.normals = None;
             inputs.surfaces = None;
             Ok(())
         })
@@ -336,7 +364,7 @@ pub unsafe extern "C" fn luxfer_stylize_start(
         stage.start(job, move |inputs, stage, job| {
             let publish = |intermediate: stylize::IntermediateResult| stage.publish(Stylised::unfinished(intermediate));
             let (before, motion) = (previous.as_ref().map(|p| &*p.0), previous.as_ref().map(|p| p.1.image()));
-            let surfaces = inputs.surfaces.clone();
+            let (surfaces, given_normals) = (inputs.surfaces.clone(), inputs.given_normals());
             // Compare the motion with the true motion, if the scenes of both frames are known.
             let deviation = match (motion, &surfaces, before.and_then(|b| b.surfaces.as_ref())) {
                 (Some(motion), Some(now), Some(before)) => Some(guides::deviation(motion, now, before, job)?),
@@ -354,7 +382,8 @@ pub unsafe extern "C" fn luxfer_stylize_start(
                 let comparison = deviation.unwrap_or(output.report.agreement);
                 let mut warnings = output.report.warnings(input.known.is_some());
                 warnings.extend(stylize::motion_disagrees(comparison));
-                Ok(Stylised::finished(output, surfaces, warnings, updater))
+                let normals_weight = given_normals.unwrap_or(output.report.normals_weight);
+                Ok(Stylised::finished(output, surfaces, warnings, normals_weight, updater))
             })
         })
     })

@@ -27,6 +27,8 @@ pub(super) struct Finished {
     pub usage: Usage,
     /// Share of the painted pixels that are whole exemplar pixels instead of blends, in `[0, 1]`.
     pub unblended_share: f64,
+    /// Weight of the normals as a guide, given by the caller or chosen by the exemplar.
+    pub normals_weight: f32,
     pub patch: usize,
     /// Number of non-finite pixels in the exemplar and in the target.
     pub broken: [usize; 2],
@@ -57,6 +59,7 @@ impl Stylised {
         output: Output,
         surfaces: Option<Arc<Surfaces>>,
         warnings: Vec<Warning>,
+        normals_weight: f32,
         updater: Option<Updater>,
     ) -> Self {
         let report = output.report;
@@ -72,6 +75,7 @@ impl Stylised {
                 guide_rms,
                 usage: report.usage,
                 unblended_share: report.unblended_share,
+                normals_weight,
                 patch: report.patch,
                 broken: [report.broken_source, report.broken_target],
                 warnings,

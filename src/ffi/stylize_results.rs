@@ -63,11 +63,15 @@ pub struct luxfer_stylize_report {
     /// Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
     /// LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
     pub unblended_share: f64,
+    /// Weight of the normals as a guide, where each guide of light has 1; 0: the normals are not used. Unless the
+    /// caller has given this weight, it is above 0 only if the strokes of the artwork follow the shapes; see
+    /// luxfer_stylize_add_guides.
+    pub normals_weight: f64,
 }
 
-versioned!(luxfer_stylize_report, [72, 80], {
+versioned!(luxfer_stylize_report, [72, 80, 88], {
     Self {
-        struct_size: 80,
+        struct_size: 88,
         is_complete: 0,
         levels: 0,
         halvings: 0,
@@ -80,6 +84,7 @@ versioned!(luxfer_stylize_report, [72, 80], {
         broken_source: 0,
         broken_target: 0,
         unblended_share: 0.0,
+        normals_weight: 0.0,
     }
 });
 
@@ -96,6 +101,7 @@ impl luxfer_stylize_report {
             broken_source: finished.broken[0] as u64,
             broken_target: finished.broken[1] as u64,
             unblended_share: finished.unblended_share,
+            normals_weight: f64::from(finished.normals_weight),
             ..Self::defaults()
         }
     }

@@ -185,7 +185,7 @@ impl Guide<'_> {
         Ok(())
     }
 
-    fn check(&self, first: &Guide) -> Result<()> {
+    pub(super) fn check(&self, first: &Guide) -> Result<()> {
         self.check_alone()?;
         first.source.check_same_size(&first.side("source"), self.source, &self.side("source"))?;
         first.target.check_same_size(&first.side("target"), self.target, &self.side("target"))

@@ -1,6 +1,7 @@
 //! The stylisation problem at one pyramid level: in floating point ([`Problem`]), and quantised for matching
 //! ([`Level`]).
 
+use super::directions::with_normals;
 use super::guides::{Channels, no_guides};
 use super::lack::LightSamples;
 use super::memory::Memory;
@@ -31,6 +32,8 @@ pub(super) struct Problem {
     pub memory: Option<Memory>,
     /// Samples of the guides of light; `None` on coarse levels, and if no guide of light has a weight above 0.
     pub light: Option<LightSamples>,
+    /// Weight of [`Input::normals`]: 0 if they are not used.
+    pub normals_weight: f32,
 }
 
 impl Problem {
@@ -47,10 +50,11 @@ impl Problem {
         let sides = [artwork.width, artwork.height, first.target.width, first.target.height];
         let shortest = sides.into_iter().min().unwrap_or(1);
         let half = params.preview && shortest >= 2 * params.patch;
-        let mut guides = Channels::new(input.guides, params.match_appearance, half, job)?;
-        let mut style = artwork.try_clone()?;
         let mut source_mask = mask("source_mask", input.source_mask, first.source)?;
         let mut target_mask = mask("target_mask", input.target_mask, first.target)?;
+        let (chosen, normals_weight) = with_normals(input, source_mask.as_deref(), job)?;
+        let mut guides = Channels::new(&chosen, params.match_appearance, half, job)?;
+        let mut style = artwork.try_clone()?;
 
         // Mask out non-finite exemplar pixels.
         let pixels = style.data.chunks_exact(style.channels);
@@ -77,12 +81,23 @@ impl Problem {
         check_motion(input, first.target)?;
         // Reduce the patch to an odd width that fits.
         let patch = if params.patch <= shortest { params.patch } else { (shortest - 1) | 1 };
-        let memory = Some(Memory::of(&guides, patch, job)?);
+        let memory = Some(Memory::of(&guides, normals_weight, patch, job)?);
         let light = LightSamples::of(&guides, source_mask.as_deref())?;
         if params.preview {
             pca::compress(&mut guides, job)?;
         }
-        Ok(Self { patch, style, guides, source_mask, target_mask, known, broken: counts, memory, light })
+        Ok(Self {
+            patch,
+            style,
+            guides,
+            source_mask,
+            target_mask,
+            known,
+            broken: counts,
+            memory,
+            light,
+            normals_weight,
+        })
     }
 
     /// Returns the shortest side of exemplar and target, in pixels.
@@ -126,6 +141,7 @@ impl Problem {
             broken: self.broken,
             memory: None,
             light: None,
+            normals_weight: self.normals_weight,
         })
     }
 }

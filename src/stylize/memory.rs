@@ -27,11 +27,13 @@ pub struct Memory {
     /// The guides of data (`Range::Data`), such as normals: for each pixel, the value of each channel, as a multiple of
     /// 1/255. Empty without such guides.
     data: Vec<u8>,
+    /// Weight of [`Input::normals`](super::Input::normals) in this frame: 0 if they were not used.
+    pub(super) normals_weight: f32,
 }
 
 impl Memory {
     /// Stores the guides of a target.
-    pub(super) fn of(guides: &Channels, patch: usize, job: Job) -> Result<Self> {
+    pub(super) fn of(guides: &Channels, normals_weight: f32, patch: usize, job: Job) -> Result<Self> {
         let target = &guides.target;
         let size = [target.width, target.height];
         let patches = size.map(|n| n + 1 - patch);
@@ -48,12 +50,17 @@ impl Memory {
         let data = try_collect(pixels.flat_map(|p| others.iter().map(|&c| stored(p[c]))))?;
         let total: f64 = lights.iter().map(|&c| guides.weights[c]).sum();
         let weight = |&c: &usize| if total > 0.0 { (guides.weights[c] / total) as f32 } else { 0.0 };
-        Ok(Self { size, patches, light, weights: lights.iter().map(weight).collect(), data })
+        Ok(Self { size, patches, light, weights: lights.iter().map(weight).collect(), data, normals_weight })
     }
 
     pub(super) fn try_clone(&self) -> Result<Self> {
         let copy = |list: &[u8]| try_collect(list.iter().copied());
         Ok(Self { light: copy(&self.light)?, data: copy(&self.data)?, weights: self.weights.clone(), ..*self })
+    }
+
+    /// Whether this is the memory of a frame, not the default.
+    pub(super) fn is_of_frame(&self) -> bool {
+        self.size != [0, 0]
     }
 
     /// Whether values of both memories can be compared: the guides have equal sizes and channels.

@@ -12,8 +12,9 @@
 //! patches, `budget` finds the knee of the errors, `retrieve` matches under the budget, and `multires` runs from
 //! coarse to fine. `border` joins new paint to a painted part. `updater` follows changes of the artwork, `animate`
 //! advances from frame to frame, and `greedy` is Hertzmann's algorithm for comparison. `report` measures the result,
-//! `lack` finds light that the exemplar lacks, `exemplar` finds defects of the exemplar, and `pilot` predicts time and
-//! energy from runs at low resolution.
+//! `lack` finds light that the exemplar lacks, `exemplar` finds defects of the exemplar, `directions` decides by its
+//! strokes whether the normals guide a run (not in the paper), and `pilot` predicts time and energy from runs at low
+//! resolution.
 //!
 //! The final picture is a blend of the mean and of whole exemplar pixels, with as much fine detail as the exemplar
 //! (`VoteMode::Adaptive`, not in the paper).
@@ -40,6 +41,7 @@
 mod animate;
 mod border;
 mod budget;
+mod directions;
 mod exemplar;
 mod finder;
 mod greedy;
@@ -62,6 +64,7 @@ mod warnings;
 mod tests;
 
 pub use budget::{Budget, Hyperbola, budget};
+pub use directions::{Directions, NORMALS_WEIGHT, directions};
 pub use exemplar::Doubts;
 pub use guides::{Guide, MAX_CHANNELS, Range};
 pub use lack::Lack;

@@ -235,6 +235,7 @@ fn output(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
     let report = Report {
         lack: lack(problem.light.as_ref(), problem.target_mask.as_deref(), &guide_error, job)?,
         doubts: examine(problem, job)?,
+        normals_weight: problem.normals_weight,
         levels,
         usage,
         unblended_share: unblended_share(&picture, &field, problem, job)?,

@@ -38,6 +38,10 @@ pub struct Input<'a> {
     pub artwork: &'a Image,
     /// The guides, each a pair of images: one aligned with the artwork (A), one with the target (B). At least one.
     pub guides: &'a [Guide<'a>],
+    /// Normals, as a guide that the exemplar switches on: they are used, with the weight of this guide, if the strokes
+    /// of the artwork follow the shapes ([`Directions::follow_shapes`](super::Directions::follow_shapes)). In a
+    /// sequence, the first frame decides: see `memory`.
+    pub normals: Option<Guide<'a>>,
     /// Mask of the artwork, one channel: patches are taken only from pixels above 0.5. If absent, from all pixels.
     pub source_mask: Option<&'a Image>,
     /// Mask of the target, one channel: only pixels above 0.5 are synthesised; the others are taken from `known`, or
@@ -63,6 +67,7 @@ impl<'a> Input<'a> {
         Self {
             artwork,
             guides,
+            normals: None,
             source_mask: None,
             target_mask: None,
             known: None,

@@ -65,6 +65,9 @@ pub struct Report {
     pub lack: Lack,
     /// Defects of the exemplar.
     pub doubts: Doubts,
+    /// Weight with which [`Input::normals`](super::Input::normals) guided the run: 0 if they are missing, or if the
+    /// strokes of the exemplar do not follow the shapes.
+    pub normals_weight: f32,
 }
 
 impl Usage {

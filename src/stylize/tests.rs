@@ -7,6 +7,7 @@ use crate::patch::VoteMode;
 use crate::rng::Rng;
 use std::sync::Mutex;
 
+mod directions;
 mod doubts;
 mod painted;
 mod sequences;

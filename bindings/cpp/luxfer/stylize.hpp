@@ -66,7 +66,8 @@ public:
         return call(luxfer_stylize_add_guide, name.get(), source.get(), target.get(), weight, range);
     }
 
-    /// Adds the guides of two scenes; extras are LUXFER_GUIDES_WITH_ flags.
+    /// Adds the guides of two scenes; extras are LUXFER_GUIDES_WITH_ flags. Without the flag of the normals, the
+    /// artwork decides whether they are used.
     Result<> add_guides(const Guides &source, const Guides &target, std::uint32_t extras = 0,
                         float extra_weight = 1.0f) const {
         return call(luxfer_stylize_add_guides, source.get(), target.get(), extras, extra_weight);

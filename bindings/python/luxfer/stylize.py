@@ -62,7 +62,7 @@ class Stylize(StageBase):
 
     def add_guides(self, source: Guides, target: Guides, extras: GuidesWith | str | int = 0, extra_weight: float = 1.0) -> None:
         """Adds the guides of two scenes: the five light guides, and extras such as
-        "normals|edges|materials|caustics"."""
+        "normals|edges|materials|caustics". Without "normals", the artwork decides whether they are used."""
         self._call("add_guides", source, target, _params.member(GuidesWith, extras), extra_weight)
 
     def clear_guides(self) -> None:
