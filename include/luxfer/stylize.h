@@ -319,7 +319,10 @@ luxfer_status luxfer_stylize_get_preset(luxfer_stylize_params *params,
  * functions still exist in such a build, but luxfer_stylize_create returns LUXFER_UNSUPPORTED.
  * ================================================================================================================== */
 
-/** Flag of luxfer_stylize_add_guides: add the normals. */
+/**
+ * Flag of luxfer_stylize_add_guides: add the normals. Without it, they are used if the strokes of the artwork follow
+ * the shapes.
+ */
 #define LUXFER_GUIDES_WITH_NORMALS 1
 
 /** Flag of luxfer_stylize_add_guides: add the edges, for shapes finer than the brush strokes. */
@@ -393,6 +396,11 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
  * the 90th percentile of luminance over both scenes becomes 0.8. They have the names "full", "direct", "specular",
  * "indirect" and "two bounces", and each has weight 1. For each of the LUXFER_GUIDES_WITH_ flags in extras it adds the
  * guide "caustics", "normals", "edges" or "materials", each with weight extra_weight, in [0, 1e6].
+ *
+ * If there is no guide of the name "normals", each job examines the artwork. If its strokes follow the shapes, the
+ * normals guide the picture too, so that its strokes follow the shapes of the target; see the field normals_weight of
+ * luxfer_stylize_report. In a sequence, the first frame decides. To overrule this, add the normals with a weight of
+ * your own by LUXFER_GUIDES_WITH_NORMALS or luxfer_stylize_add_guide; with weight 0 they are not used.
  * LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
  * range.
  */
@@ -526,6 +534,12 @@ typedef struct luxfer_stylize_report {
      * LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
      */
     double unblended_share;
+    /**
+     * Weight of the normals as a guide, where each guide of light has 1; 0: the normals are not used. Unless the
+     * caller has given this weight, it is above 0 only if the strokes of the artwork follow the shapes; see
+     * luxfer_stylize_add_guides.
+     */
+    double normals_weight;
 } luxfer_stylize_report;
 
 /**

@@ -1472,6 +1472,7 @@ class luxfer_stylize_report(Structure):
         ("broken_source", c_uint64),
         ("broken_target", c_uint64),
         ("unblended_share", c_double),
+        ("normals_weight", c_double),
     ]
     result = types.StylizeReport
 
