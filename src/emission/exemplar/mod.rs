@@ -220,15 +220,25 @@ fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64
 
 /// The share of each component's pixels that are darker than half of the component's median luminance.
 fn dark_shares(components: &Components, image: &Image) -> Result<Vec<f64>> {
-    let share = |(k, component): (usize, &Component)| {
-        let mut luminances = try_vec(component.area, 0f32)?;
-        let [left, top] = component.min;
-        let pixels = (top..=component.max[1]).flat_map(|y| (left..=component.max[0]).map(move |x| (x, y)));
-        let own = pixels.filter(|(x, y)| components.labels[y * image.width + x] as usize == k + 1);
-        luminances.iter_mut().zip(own).for_each(|(luminance, (x, y))| *luminance = colour::luminance(image.rgb(x, y)));
-        let (_, median, _) = luminances.select_nth_unstable_by(component.area / 2, f32::total_cmp);
+    // Sort the luminances of all lit pixels by component. For each component, `ends` is first the start of its part of
+    // `luminances`, and at last the end.
+    let mut ends = try_vec(components.list.len(), 0usize)?;
+    let mut total = 0;
+    for (end, component) in ends.iter_mut().zip(&components.list) {
+        *end = total;
+        total += component.area;
+    }
+    let mut luminances = try_vec(total, 0f32)?;
+    for (i, &label) in components.labels.iter().enumerate().filter(|(_, label)| **label != 0) {
+        let end = &mut ends[label as usize - 1];
+        luminances[*end] = colour::luminance(image.rgb(i % image.width, i / image.width));
+        *end += 1;
+    }
+    let share = |(component, &end): (&Component, &usize)| {
+        let own = &mut luminances[end - component.area..end];
+        let (_, median, _) = own.select_nth_unstable_by(component.area / 2, f32::total_cmp);
         let half = *median / 2.0;
-        Ok(luminances.iter().filter(|luminance| **luminance < half).count() as f64 / component.area as f64)
+        own.iter().filter(|luminance| **luminance < half).count() as f64 / component.area as f64
     };
-    components.list.iter().enumerate().map(share).collect()
+    try_collect(components.list.iter().zip(&ends).map(share))
 }
