@@ -441,7 +441,7 @@ fn rendered(context: *mut luxfer_context, kind: luxfer_demo) -> *mut luxfer_guid
         let scene = made(|out| luxfer_demo_create_scene(context, kind, out));
         assert_eq!(luxfer_guides_set_scene(guides, scene), LUXFER_OK);
         let job = made(|out| luxfer_guides_start(guides, &params, out));
-        assert_eq!(luxfer_job_wait(job, -1, None, null_mut(), null_mut()), LUXFER_OK, "{}", message(context));
+        assert_eq!(wait(job, -1, None, null_mut()), LUXFER_OK, "{}", message(context));
         assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
     }
