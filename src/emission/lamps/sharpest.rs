@@ -22,13 +22,12 @@ const MAX_DIFFERENCE: f64 = 0.5;
 /// similar lamps. [origin not recorded]
 const MIN_SHARP_SHARE: f64 = 0.4;
 
-/// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest one of similar lamps by more
-/// than this value. Values from 0.02 to 0.1 change which lamps are shown, but no lattice. [bench photos:real]
+/// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest one of its kind by more than
+/// this value. Values from 0.02 to 0.1 change which lamps are shown, but no lattice. [bench photos:real]
 const MAX_OBSTRUCTED: f64 = 0.05;
 
-/// Replaces each lamp that is not sharp, or that the photo does not show completely, by a similar lamp that is sharp,
-/// whole and unobstructed, with the same centre. Chooses at random among several such lamps, so that the texture keeps
-/// their variety.
+/// Replaces each lamp that is not sharp, or that the photo does not show completely, by a similar lamp that is sharp
+/// and whole, with the same centre. Chooses at random among several such lamps, so that the texture keeps their variety.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -41,7 +40,7 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
             exemplar.roles[*j] == Role::Whole && is_alike
         };
         let like: Vec<usize> = (0..lamps.len()).filter(is_like).collect();
-        sharp_and_unobstructed(exemplar, like)
+        sharpest(exemplar, like)
     };
     let mut choices: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (n, instance) in instances.iter_mut().enumerate() {
@@ -54,13 +53,17 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// Those of similar lamps that are sharp and that nothing in front of them hides in part.
-fn sharp_and_unobstructed(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
-    let dark = |k: usize| exemplar.dark_share[k];
-    let least_dark = lamps.iter().map(|&k| dark(k)).fold(f64::INFINITY, f64::min);
-    lamps.retain(|&k| dark(k) <= least_dark + MAX_OBSTRUCTED);
+/// The sharp ones of similar lamps.
+fn sharpest(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
     let max_area = lamps.iter().map(|&k| exemplar.photo_area[k]).fold(0.0, f64::max);
     lamps.retain(|&k| exemplar.photo_area[k] >= MIN_SHARP_SHARE * max_area);
+    lamps
+}
+
+/// The lamps of one design that nothing in front of them hides in part.
+fn unobstructed(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
+    let min_dark = lamps.iter().map(|&k| exemplar.dark_share[k]).fold(f64::INFINITY, f64::min);
+    lamps.retain(|&k| exemplar.dark_share[k] <= min_dark + MAX_OBSTRUCTED);
     lamps
 }
 
@@ -71,8 +74,9 @@ pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [In
         let of_kind = move |k: &usize| designs.of(*k).is_some_and(|(_, fitted)| fitted.kind == kind);
         (0..exemplar.roles.len()).filter(of_kind).filter(|&k| exemplar.roles[k] == Role::Whole)
     };
-    let sharp: Vec<Vec<usize>> =
-        (0..designs.kinds.len()).map(|kind| sharp_and_unobstructed(exemplar, clear(kind).collect())).collect();
+    let sharp: Vec<Vec<usize>> = (0..designs.kinds.len())
+        .map(|kind| sharpest(exemplar, unobstructed(exemplar, clear(kind).collect())))
+        .collect();
     for (n, instance) in instances.iter_mut().enumerate() {
         let Some((_, own)) = designs.of(instance.component) else { continue };
         let choice = &sharp[own.kind];
