@@ -77,7 +77,10 @@ pub struct Features {
     pub non_finite: usize,
 }
 
-/// Computes the features of a photo. Fails if a depth map has no positive finite value.
+/// Computes the features of a photo.
+///
+/// Errors: a setting out of range, a depth map of another size, photo values too large for finite features
+/// (`InvalidArgument`); a depth map without a positive finite value (`Degenerate`).
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
     params.check()?;
     let (width, height) = (input.photo.width, input.photo.height);

@@ -77,7 +77,8 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
     let off_weight = 1.0 / (2.0 * radius as f32 + 1.0);
     exec::for_rows(&mut normals.data, width * 3, job.part(0.6, 1.0), |y, row| {
         let w = inverse_depth.row(y);
-        // Near the left and right border, fewer windows lie inside the image.
+        // Near the left and right border, fewer windows lie inside the image. Split each row there, so that all pixels
+        // of a tile have the same windows.
         let inner = radius.min(width)..width.saturating_sub(radius).max(radius.min(width));
         for part in [0..inner.start, inner.clone(), inner.end..width] {
             for start in part.clone().step_by(TILE) {

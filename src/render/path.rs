@@ -123,8 +123,8 @@ pub struct PathLength {
     /// Largest number of bounces of a path.
     pub max_bounces: u32,
     /// Factor for Russian roulette: the product of this factor and the throughput of a path is the path's expected
-    /// contribution, as a share of the pixel's estimate. `None` until the first bounce; the factor then becomes the
-    /// reciprocal of the throughput after this bounce.
+    /// contribution, as a share of the pixel's estimate. If the factor is `None` at the start of a path, it becomes the
+    /// reciprocal of the throughput after the first bounce.
     pub roulette_weight: Option<Vec3>,
 }
 
@@ -206,8 +206,8 @@ pub(super) fn continue_path<O: Observer>(
         return None;
     }
     // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette
-    // and splitting in light transport simulation"). The single value `roulette_weight` replaces their estimate of the
-    // radiance yet to be found.
+    // and splitting in light transport simulation"). The paper estimates the radiance that arrives at each vertex; here
+    // one `roulette_weight` per path takes the place of these estimates.
     let mut throughput = segment.throughput;
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight
@@ -328,7 +328,8 @@ pub(super) fn connection_weight(
     transmittance * (weight / light.pdf)
 }
 
-/// Adds the emission of a surface that a BSDF sample has hit, with the MIS weight against light sampling.
+/// Adds the emission of the surface that `segment` has hit. If a light sample could also have found this light, the
+/// emission has the MIS weight against light sampling; otherwise its weight is 1.
 fn add_emission<O: Observer>(world: &World, segment: &PathSegment, vertex: &Vertex, observer: &mut O) {
     let Some(index) = world.emitter_of(vertex.id) else { return };
     let lights = world.lights();
@@ -349,7 +350,8 @@ fn add_emission<O: Observer>(world: &World, segment: &PathSegment, vertex: &Vert
     observer.add(lights.emitters.source(index, uv), segment.throughput * weight, emission, Strategy::BsdfSample);
 }
 
-/// Adds the environment's radiance along a BSDF sample, with the MIS weight against light sampling.
+/// Adds the environment's radiance along a segment without a hit. The radiance has the MIS weight against light
+/// sampling, or the weight 1 after the eye or a mirror.
 fn add_environment<O: Observer>(world: &World, segment: &PathSegment, observer: &mut O) {
     let Some(environment) = world.environment() else { return };
     let emission = environment::radiance(environment, segment.ray.direction);

@@ -1,7 +1,8 @@
 //! Path reuse among neighbouring pixels: the paths of a block of pixels share their secondary vertices.
 //!
 //! A secondary vertex sends light not only to the primary vertex of its own path, but also to the primary vertices of
-//! the neighbouring paths; one more ray per neighbour tests its visibility. The vertex is weighted as if it had been
+//! the neighbouring paths. One more ray per neighbour tests whether that neighbour's primary vertex sees the secondary
+//! vertex. The secondary vertex is weighted as if it had been
 //! sampled from the mean of the pdfs of all primary vertices that see it (the balance heuristic of Veach and Guibas
 //! 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by re-using paths"). Estimates remain unbiased.
 //! Each pixel gets indirect light from as many vertices as the block has pixels, at the cost of little more than one
@@ -208,8 +209,9 @@ fn trace_primary<'w, W: ReplayObserver>(
 }
 
 /// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary surface.
-/// If the secondary vertex cannot be shared, the observer also receives all of its light, and the result is `None`. The
-/// result is also `None` if there is no secondary vertex, if the path ends there, or if the vertex sends no light.
+/// If the secondary vertex cannot be shared, the path is traced to its end for this observer alone, and the result is
+/// `None`. The result is also `None` if there is no secondary vertex, if the path may have only one bounce, or if the
+/// secondary vertex sends no other light.
 fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
     primary: &PrimaryVertex,
@@ -354,7 +356,7 @@ impl Viewers {
             }
             let direction = (surface.position - primary.vertex.position).normalize_or_zero();
             let theirs = surface.normal.dot(direction);
-            // Skip primary vertices on the other side of the secondary surface.
+            // Skip primary vertices that see the back of the side that the owner's primary vertex sees.
             if !(theirs * cosine > 0.0) {
                 return None;
             }

@@ -60,7 +60,8 @@ pub struct Pane {
     pub triangle: u32,
     /// Share of the light that misses the surface: 1 - opacity.
     pub uncovered: f32,
-    /// Share of the light that the surface transmits, per channel.
+    /// Share of all arriving light that the covered part of the surface transmits, per channel: opacity × transmittance
+    /// of the material.
     pub through: Vec3,
 }
 
@@ -146,20 +147,21 @@ impl World {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
     }
 
-    /// Returns a copy for the next pass. The copy seldom samples the lights that are unlikely to reach the surfaces in
-    /// view, as far as the light samples so far tell. `None` if this copy stays in use (see [`Lights::learned`]).
+    /// Returns a copy for the next pass. It seldom samples the lights that, by the light samples so far, are unlikely to
+    /// reach the surfaces in view. `None` if the next pass shall use `self` again (see [`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
         self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.with_vicinity()).transpose()
     }
 
-    /// Ends the learning: returns a copy that keeps what this copy has learned, and learns no more.
+    /// Ends the learning: returns a copy that keeps what `self` has learned, and learns no more.
     pub(super) fn settled(&self) -> Result<Self> {
         let learned = self.lights.learned()?.unwrap_or_else(|| self.lights.clone());
         let world = Self { lights: learned, ..self.clone() }.with_vicinity()?;
         Ok(Self { lights: world.lights.clone().settled(), ..world })
     }
 
-    /// Builds the structure `vicinity` from the vertices recorded so far, unless the present structure still fits them.
+    /// Builds the structure `vicinity` from the vertices recorded so far. Keeps the present one if it still fits these
+    /// vertices, or if no structure may be built.
     fn with_vicinity(self) -> Result<Self> {
         let Some((positions, counted)) = self.lights.positions()?.filter(|_| self.may_build_vicinity) else {
             return Ok(self);

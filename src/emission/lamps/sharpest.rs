@@ -22,13 +22,14 @@ const MAX_DIFFERENCE: f64 = 0.5;
 /// similar lamps. [origin not recorded]
 const MIN_SHARP_SHARE: f64 = 0.4;
 
-/// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest one of similar lamps by more
-/// than this value. Values from 0.02 to 0.1 change which lamps are shown, but no lattice. [bench photos:real]
+/// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest dark share among similar
+/// lamps by more than this value. Values from 0.02 to 0.1 change which lamps are shown, but the lattice of no photo.
+/// [bench photos:real]
 const MAX_OBSTRUCTED: f64 = 0.05;
 
 /// Replaces each lamp that is not sharp, or that the photo does not show completely, by a similar lamp that is sharp,
-/// whole and unobstructed, with the same centre. Chooses at random among several such lamps, so that the texture keeps
-/// their variety.
+/// whole and unobstructed. The centre stays. If there are several such lamps, one is chosen at random for each
+/// instance, so that the texture shows all of them. If there is none, the lamp stays.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -54,7 +55,7 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// Those of similar lamps that are sharp and that nothing in front of them hides in part.
+/// Of similar lamps, returns those that are sharp ([`MIN_SHARP_SHARE`]) and not obstructed ([`MAX_OBSTRUCTED`]).
 fn sharp_and_unobstructed(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
     let dark = |k: usize| exemplar.dark_share[k];
     let least_dark = lamps.iter().map(|&k| dark(k)).fold(f64::INFINITY, f64::min);
@@ -65,7 +66,8 @@ fn sharp_and_unobstructed(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usi
 }
 
 /// Like [`show_sharpest`], but for lamps with a design: replaces each lamp that is not sharp, or that the photo does
-/// not show completely, by a sharp and whole lamp of its kind. The centre stays.
+/// not show completely, by a sharp, whole and unobstructed lamp of its kind. The centre stays. If its kind has no such
+/// lamp, the lamp stays.
 pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [Instance], seed: u64) {
     let clear = |kind: usize| {
         let of_kind = move |k: &usize| designs.of(*k).is_some_and(|(_, fitted)| fitted.kind == kind);

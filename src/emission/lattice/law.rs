@@ -81,8 +81,8 @@ impl Law {
         }
     }
 
-    /// Whether the periods are exactly parallel to the axes; true if there are none. Of a row, only the period along
-    /// the row counts.
+    /// Whether the periods are exactly parallel to the axes. Of a row, only the period along the row counts. True for
+    /// the other laws: they have no periods, or periods that are parallel to the axes by construction (`Whole`).
     pub fn is_aligned(&self) -> bool {
         let on_axis = |period: DVec2| period.min_element() == 0.0 || period.max_element() == 0.0;
         match *self {

@@ -11,7 +11,8 @@ fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Ima
     images.try_into().unwrap()
 }
 
-/// Returns the mean of the squared errors, each divided by the squared true value plus (1 % of the mean)².
+/// Returns the mean over all values of (v - t)² / (t² + (0.01 m)²). t is the true value, and m is the mean of all true
+/// values.
 fn rel_mse(image: &Image, truth: &Image) -> f64 {
     let mean = truth.data.iter().map(|&v| f64::from(v)).sum::<f64>() / truth.data.len() as f64;
     let square = |(&v, &t): (&f32, &f32)| f64::from(v - t).powi(2) / (f64::from(t).powi(2) + (0.01 * mean).powi(2));
@@ -138,7 +139,8 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     };
     let covered = renders.iter().map(|(_, output)| inside(output)).sum::<f64>() / n;
     assert!(covered > 0.93 && covered < 0.97, "{covered}");
-    // Compute the squared bias of the mean preview in each square; subtract the noise that remains in the mean.
+    // Compute the squared bias of each square of 8 × 8 pixels: the squared error of the mean preview, minus the variance
+    // of this mean.
     let truth = squares(&truth);
     let off: Vec<Vec<f64>> = renders
         .iter()
@@ -243,8 +245,8 @@ fn an_edge_in_the_guides_stays_sharp() {
     }
 }
 
-/// The filter would blur a bright column that the guides do not show. The halves differ by the same amount at all
-/// pixels, so that a half has the same standard error of 0.5 everywhere.
+/// The filter would blur a bright column that the guides do not show. The halves differ by d = √0.5 at all pixels, so a
+/// half has the standard error d / √2 = 0.5 everywhere.
 #[test]
 fn no_half_moves_by_more_than_two_standard_errors() {
     let light = |x: usize| if x == 32 { 6.0 } else { 1.0 };

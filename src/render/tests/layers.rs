@@ -23,7 +23,7 @@ fn layer<'a>(film: &'a Film, name: &str) -> &'a Image {
     &film.layers.iter().find(|l| l.name == name).unwrap().image
 }
 
-/// A scene under an open sky with a lamp, a point light, and every kind of surface.
+/// A scene with a lamp, a point light and every kind of surface, under an open sky.
 fn open() -> Scene {
     let mut scene = everything();
     let names = ["Floor", "Ceiling", "Gloss", "Mirror", "Window", "Leaf"];
