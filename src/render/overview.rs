@@ -14,7 +14,7 @@ const INSETS: [f32; 2] = [0.08, 0.2];
 /// Distances of the candidate cameras from the surface, as shares of the depth of the scene below the surface.
 /// [convention]
 const HEIGHTS: [f32; 2] = [0.35, 0.5];
-/// Numbers of columns and rows of rays whose mean length is the score of a camera. [convention]
+/// Numbers of columns and rows of rays whose mean length is the score of a camera.
 const RAYS: [usize; 2] = [12, 8];
 
 /// Returns the candidate camera whose rays have the largest mean length. A ray ends at its first hit; its length is at

@@ -2,11 +2,11 @@
 //!
 //! A secondary vertex sends light not only to the primary vertex of its own path, but also to the primary vertices of
 //! the neighbouring paths. One more ray per neighbour tests whether that neighbour's primary vertex sees the secondary
-//! vertex. The secondary vertex is weighted as if it had been
-//! sampled from the mean of the pdfs of all primary vertices that see it (the balance heuristic of Veach and Guibas
-//! 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by re-using paths"). Estimates remain unbiased.
-//! Each pixel gets indirect light from as many vertices as the block has pixels, at the cost of little more than one
-//! ray per vertex. In return, the errors of the block's pixels are correlated.
+//! vertex. The secondary vertex is weighted as if it had been sampled from the mean of the pdfs of all primary vertices
+//! that see it (the balance heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path
+//! tracing by re-using paths"). Estimates remain unbiased. Each pixel gets indirect light from as many secondary
+//! vertices as the block has pixels; each further vertex costs the pixel little more than one ray. The disadvantage is
+//! that the errors of the block's pixels are correlated.
 //!
 //! Primary and secondary vertices must be non-specular, since a mirror shows each pixel a different surface. Paths
 //! with other vertices are traced alone.

@@ -147,8 +147,9 @@ impl World {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
     }
 
-    /// Returns a copy for the next pass. It seldom samples the lights that, by the light samples so far, are unlikely to
-    /// reach the surfaces in view. `None` if the next pass shall use `self` again (see [`Lights::learned`]).
+    /// Returns a copy for the next pass. The copy seldom samples the lights that, by the light samples so far, are
+    /// unlikely to reach the surfaces in view. `None` if the next pass is to use `self` again (see
+    /// [`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
         self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.with_vicinity()).transpose()
     }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// The half-extent of [`detail`] is chosen such that this share of the points lies within it. The remaining points are
+/// Share of the points that differ from the median by at most the half-extent of [`detail`]. The remaining points are
 /// ignored, because they may be outliers, such as a few objects left behind at the origin of a national grid.
 /// [convention]
 const NEAR_SHARE: f64 = 0.75;

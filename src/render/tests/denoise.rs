@@ -139,7 +139,7 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     };
     let covered = renders.iter().map(|(_, output)| inside(output)).sum::<f64>() / n;
     assert!(covered > 0.93 && covered < 0.97, "{covered}");
-    // Compute the squared bias of each square of 8 × 8 pixels: the squared error of the mean preview, minus the variance
+    // Compute the squared bias of each square of 8 × 8 pixels: the squared error of the mean preview minus the variance
     // of this mean.
     let truth = squares(&truth);
     let off: Vec<Vec<f64>> = renders

@@ -153,8 +153,8 @@ fn heaviest(facets: &[Facet], free: &[bool], direction: DVec3, tolerance: f64) -
         return None;
     }
 
-    // Fit a plane to the facets in the window, and select the facets again by the plane's normal and offset. They are
-    // more precise than `direction`, which is a mean over a cell.
+    // Fit a plane to the facets in the window, and select the facets again by the normal and offset of this plane. Its
+    // normal is more precise than `direction`, which is a mean over a cell of the grid of normals.
     let members: Vec<usize> = window.iter().map(|w| w.1).collect();
     let plane = gather(facets, &members, tolerance);
     let belongs = |f: &Facet| {
