@@ -115,7 +115,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
             Ok((depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None))
         }
     };
-    // Meanwhile, allocate the output: allocation takes a tenth of the total time.
+    // Allocate the output while the depth is computed, because allocation takes a tenth of the total time.
     let (geometry, image) = exec::both(geometry, || Image::new(width, height, CHANNELS));
     let (surface, depth_source, layout) = geometry?;
     let mut image = image?;

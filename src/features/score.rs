@@ -142,8 +142,9 @@ impl Evidence {
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
-    /// Returns up to `count` candidate distances of one side (left, right, ceiling or floor), sorted by decreasing
-    /// support. If the side is at a candidate distance, its edge with the back wall coincides with a segment.
+    /// Returns up to `count` candidate distances of one side (left, right, ceiling or floor). If the side is at a
+    /// candidate distance, its edge with the back wall coincides with a segment. Candidates with which more segments
+    /// agree come first; segments count by their weights.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.

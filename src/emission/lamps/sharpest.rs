@@ -1,5 +1,5 @@
-//! Replaces lamps that few photo pixels show by similar lamps that many photo pixels show, because these are sharper.
-//! Also replaces lamps that something in front of them hides in part by similar lamps in full view.
+//! Replaces lamps that few photo pixels show by similar lamps that many photo pixels show: these are sharper. Lamps
+//! that are partly hidden by something in front of them are replaced by similar lamps in full view.
 
 use super::designs::Designs;
 use super::instance::Instance;
@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 /// `DIFFERENCE` + `BLUR_PIXELS` / √A, but at most `MAX_DIFFERENCE`. [origin not recorded]
 const DIFFERENCE: f64 = 0.25;
 
-/// `BLUR_PIXELS`, in photo pixels, allows for blur and bloom, which enlarge a small lamp most. For `MAX_DIFFERENCE`,
-/// see [`DIFFERENCE`]. [origin not recorded]
+/// `BLUR_PIXELS`, in photo pixels, allows for blur and bloom, which enlarge a small lamp by a larger share than a large
+/// one. For `MAX_DIFFERENCE`, see [`DIFFERENCE`]. [origin not recorded]
 const BLUR_PIXELS: f64 = 2.0;
 const MAX_DIFFERENCE: f64 = 0.5;
 

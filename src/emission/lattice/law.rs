@@ -44,7 +44,7 @@ impl Law {
     }
 
     /// Stretches the lattice so that a texture of `size` unwarped pixels can repeat: its width and its height become
-    /// lattice vectors.
+    /// lattice vectors. Laws without a lattice are returned unchanged.
     ///
     /// Errors: `Degenerate` if this is impossible, for example because a side of the texture is shorter than half a
     /// period.

@@ -60,7 +60,7 @@ pub struct Comparison<'a> {
     /// Lit share of the part of the exemplar that the photo shows.
     lit_share: f64,
     is_lattice: bool,
-    /// The value b in [`TOLERANCE`]: the difference in error that is tolerated in addition to the factor a.
+    /// The value b in [`TOLERANCE`]: equally good patches may exceed a times the lowest error by this.
     slack: f32,
 }
 
@@ -145,8 +145,8 @@ impl<'a> Comparison<'a> {
     ///
     /// - Leaves out shifts that fill fewer than `min_fill` empty pixels. If `min_fill` is `None`, the minimum is
     ///   [`ENOUGH_COVERAGE`] times the largest number that any shift fills.
-    /// - Stops comparing a shift early, and gives it an infinite error, as soon as it cannot be equally good as the
-    ///   error `limit`, or as the lowest error found so far.
+    /// - Stops comparing a shift, and gives it an infinite error, as soon as its error must exceed
+    ///   [`Self::equally_good`] of the lowest known error. The lowest known error begins with `limit`.
     pub fn score(
         &self,
         block: &Block,
