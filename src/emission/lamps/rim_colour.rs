@@ -86,7 +86,8 @@ impl RimColours {
     }
 }
 
-/// The label of the component that contains pixel `i` or, if there is none, of a component within [`RIM_WIDTH`].
+/// The label of the component that contains pixel `i` or, if there is none, of a component within [`RIM_WIDTH`] columns
+/// and rows. `None` if there is no such component either.
 fn label_near(components: &Components, i: usize, width: usize, height: usize) -> Option<u32> {
     let (x, y) = (i % width, i / width);
     let rows = y.saturating_sub(RIM_WIDTH)..(y + RIM_WIDTH + 1).min(height);

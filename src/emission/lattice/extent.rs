@@ -139,7 +139,8 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
 
 /// The period with which a row of lamps repeats as a whole: a vector along `period`, which leads from lamp to lamp. Its
 /// length is that of the exemplar along the row, including the free space at both ends, rounded to a multiple of
-/// `period`. `None` if the row may continue beyond the view at one of its ends. An end is in view if:
+/// `period`. `None` if the exemplar is shorter than half a period, or if the row may continue beyond the view at one of
+/// its ends. An end is in view if:
 ///
 /// - the exemplar extends beyond the place where the next lamp would begin, and
 /// - the photo, if there is one, shows the place where the centre of the next lamp would lie.
