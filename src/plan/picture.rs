@@ -120,8 +120,9 @@ impl Picture {
                 uniform(counts.find(|&paths| self.error(paths) <= wanted).unwrap_or(ADAPTIVE_FROM as u32))
             }
             Goal::Seconds(_) => {
-                // Candidates are the largest number of paths that the time allows, and that number with its lowest bits
-                // cleared, which consists of fewer nets. Use the candidate with the smallest expected error.
+                // Candidates are the largest number of paths that the time allows, and the numbers that remain if its
+                // lowest bits are cleared: these numbers consist of fewer nets. Use the candidate with the smallest
+                // expected error.
                 let max_paths = count(uniform_paths);
                 let whole = (0..max_paths.ilog2())
                     .map(|bits| max_paths >> bits << bits)

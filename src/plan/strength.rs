@@ -18,8 +18,8 @@ const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
 /// Target radiance of the first trial, in cd/m². It exceeds all other light of a scene by far, so that the emission
 /// must supply it. [convention]
 const DOMINANT: f32 = 1e9;
-/// Minimum and maximum number of paths of a solution: the paths of its first round, and the limit of
-/// [`relight::Params::paths`]. [convention]
+/// Minimum and maximum number of paths of a solution: the paths of its first round, and the largest value that
+/// [`relight::Params::paths`] allows. [convention]
 const SOLUTION_PATHS: [f64; 2] = [(relight::BATCHES as u32 * relight::FIRST_ROUND) as f64, (1u32 << 30) as f64];
 /// Half-width of a 95 % confidence interval in standard errors: Student's factor for the number of batches used.
 /// [convention]
@@ -37,8 +37,8 @@ impl Strength {
     ///
     /// A first trial only measures b and r: the target's radiance from other lights, and from the unscaled emission.
     /// Its own solution, for the radiance [`DOMINANT`], is not used. The timed trials then solve for the current
-    /// radiance b + r. Another radiance would do as well: the solution is (target - b) / r, and for b = 0 its relative
-    /// error does not depend on the target.
+    /// radiance b + r. Another target would give nearly the same relative error: the solution is (target - b) / r, and
+    /// if b = 0, its relative error does not depend on the target.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,

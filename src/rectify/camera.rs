@@ -129,9 +129,9 @@ pub fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
     (point.truncate() - principal * point.z).extend(point.z * focal).normalize()
 }
 
-/// Estimates the logarithm of the focal length in pixels, and its standard deviation. `start` is a first guess in
-/// pixels. `None` if the points do not determine the focal length, or if it differs from `start` by more than a factor
-/// of 10.
+/// Estimates the logarithm of the focal length in pixels, and the standard deviation of this logarithm. `start` is a
+/// first guess of the focal length in pixels. `None` if the points do not determine the focal length, or if the
+/// estimate differs from `start` by more than a factor of 10.
 ///
 /// The directions of two points `(v1, w1)` and `(v2, w2)` (homogeneous pixels) are orthogonal if
 /// `(v1 - w1 c) · (v2 - w2 c) + f² w1 w2 = 0`, where `c` is the principal point. Each pair gives one such equation,

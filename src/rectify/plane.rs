@@ -86,7 +86,7 @@ pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 
     Ok(plane)
 }
 
-/// Returns the plane parallel to two axes, on the side of the camera where most of the pixels lie. The plane's
+/// Returns the plane parallel to two axes that lies in front of the camera for most of the pixels. The plane's
 /// coordinates are ordered and flipped so that they run right and down in the photo.
 fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Plane {
     let normal = perspective.axes.col(3 - i - j);
@@ -107,10 +107,11 @@ fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Pl
 }
 
 /// Finds the two axes whose plane fits the mask best: the mask lies on one side of the plane's horizon, and the lines
-/// inside the mask run along both axes and not along the third axis. A mask entirely above the horizon counts as a
-/// ceiling, unless the lines contradict it.
+/// inside the mask run along both axes and not along the third axis. A mask of which more than 98 % lies above the
+/// horizon counts as a ceiling, unless its lines favour another plane clearly.
 fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
-    // Add up, for each axis, the lengths of its segments inside the mask.
+    // Add up, for each axis, the lengths of its segments inside the mask. The part of a segment inside the mask is
+    // estimated from the two end points and the midpoint.
     let inside = |p: DVec2| {
         p.x >= 0.0
             && p.y >= 0.0

@@ -1,6 +1,6 @@
-//! Finds the best quadrilateral around a plane's mask whose sides run to the two vanishing points (§5.3). In plane
-//! coordinates it is a rectangle on the camera's side of the horizon. Far parts of the plane, which would have to be
-//! magnified too much, do not count as part of the mask.
+//! Finds the best quadrilateral around a plane's mask (§5.3). Its sides run to the vanishing points of the plane's two
+//! axes, so it is a rectangle in plane coordinates. It lies on the camera's side of the horizon. Far parts of the
+//! plane, which would have to be magnified too much, do not count as part of the mask.
 
 use super::plane::Plane;
 use crate::error::{Error, Result};

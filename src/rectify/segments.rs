@@ -16,12 +16,13 @@ const MIN_GRADIENT: f32 = 0.01;
 /// pixel joins: π / 8. [convention: LSD]
 const TOLERANCE: f64 = std::f64::consts::FRAC_PI_8;
 
-/// Length, in pixels, that the line fit leaves out at each end of a region. [origin not recorded]
+/// Length, in pixels, that the line fit leaves out at each end of a region, but at most a quarter of the region's
+/// length. [origin not recorded]
 const TRIM: f64 = 2.0;
 
-/// A region is dense enough if its pixels cover at least this share of its bounding rectangle; otherwise it is grown
-/// again with a tighter tolerance, or its pixels far from the seed are cut off. Regions that arise from noise have
-/// gaps and cover less. [bench lines]
+/// A region is dense enough if its pixels cover at least this share of its bounding rectangle. Otherwise it is grown
+/// again with a tighter tolerance. If that does not suffice, its pixels far from the seed are cut off. Regions that
+/// arise from noise have gaps and cover less. [bench lines]
 const MIN_DENSITY: f64 = 0.6;
 
 /// Finds the straight edges of a photo: statistically significant regions of similar gradient direction.
@@ -110,9 +111,9 @@ impl FittedSegment {
         self.pixels as f64 / (self.segment.length() * self.width).max(1.0)
     }
 
-    /// Minus the logarithm of the probability that, by chance, at least as many pixels of the rectangle agree in
-    /// gradient direction as lie in the region (Chernoff's bound of the binomial tail). 0 if fewer agree than chance
-    /// predicts.
+    /// Minus the logarithm of a probability: that at least as many pixels of the bounding rectangle agree in gradient
+    /// direction as the region has, if all directions are random. The probability is Chernoff's bound of the binomial
+    /// tail. 0 if the region covers no more of the rectangle than chance predicts.
     fn log_surprise(&self) -> f64 {
         let share = self.density().min(1.0 - 1e-9);
         let chance = TOLERANCE / std::f64::consts::PI;
@@ -123,7 +124,8 @@ impl FittedSegment {
 
 impl Grower<'_> {
     /// Grows the region around a seed and fits a segment to it. If the region is not dense enough, first tightens the
-    /// tolerance of the gradient direction, then cuts off pixels far from the seed.
+    /// tolerance of the gradient direction, then cuts off pixels far from the seed. `None` if the region has too few
+    /// pixels for a segment, or is wider than it is long.
     fn straight_region(&mut self, seed: u32) -> Option<FittedSegment> {
         self.grow(seed, TOLERANCE);
         let mut found = self.fit()?;

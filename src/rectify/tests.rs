@@ -176,7 +176,7 @@ fn the_stated_error_of_a_focal_length_from_lines_is_its_true_error() {
 
 #[test]
 fn one_family_gives_its_point_wherever_it_is() {
-    // Put the point inside the image, on its border, and ever farther outside.
+    // Put the vanishing point inside the image, on its border, and ever farther outside.
     let border = 400.0 / 0.4f64.cos();
     for far in [300.0, border, 5e3, 1e6, 1e12, f64::INFINITY] {
         let along = DVec2::from_angle(0.4);
@@ -460,7 +460,8 @@ fn images_without_lines_are_refused_and_never_crash() {
             let error = find_view(image, &params, Monitor::default().job()).unwrap_err();
             assert_eq!(error.kind, ErrorKind::Degenerate);
         }
-        // Images of noise, of binary noise, with all but a corner saturated, and with every third pixel not finite.
+        // Test four images: noise, noise rounded to 0 or 1, white with a black corner, and noise in which every third
+        // pixel is not finite.
         let odd = |x: usize, y: usize| if (x + y) % 3 == 0 { f32::NAN } else { noise(x, y) };
         for image in [
             Image::from_fn(200, 150, |x, y| [noise(x, y); 3]).unwrap(),

@@ -21,7 +21,8 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     job.check()?;
     job.report(0.1);
 
-    // The best-resolved part of the photo determines the pixel size, unless the image would become too large.
+    // The best-resolved part of the plane determines the pixel size, unless the image would become larger than
+    // `max_side`.
     let size = rectangle.high - rectangle.low;
     let pixel_size = rectangle.finest_pixel_side.max(size.max_element() / params.max_side as f64);
     let side = |length: f64| ((length / pixel_size).round() as usize).clamp(1, params.max_side);

@@ -32,7 +32,7 @@ pub struct VanishingPoint {
     /// Number of segments that run to the point; 0 if the point was derived from the other points or from a
     /// convention.
     pub support: usize,
-    /// Standard deviation of the point's direction in camera space, in radians.
+    /// Root mean square, in radians, of the angle between the point's direction in camera space and the true direction.
     pub error: f64,
     /// Covariance of the point's direction in camera space, in radians squared; its trace is the square of `error`.
     /// For a point far outside the image, the uncertainty along the lines is larger than the uncertainty across them.

@@ -107,7 +107,8 @@ pub(super) fn run<const N: usize>(
     x
 }
 
-/// BFGS update of the inverse Hessian from a step and the change of the gradient.
+/// Updates the inverse Hessian from a step and the change of the gradient (BFGS). Leaves it unchanged unless the
+/// function has positive curvature along the step, beyond rounding.
 fn update<const N: usize>(inverse: &mut Option<[[f64; N]; N]>, step_taken: &[f64; N], gradient_change: &[f64; N]) {
     let curvature = dot(step_taken, gradient_change);
     if !(curvature > 1e-12 * dot(step_taken, step_taken).sqrt() * dot(gradient_change, gradient_change).sqrt()) {

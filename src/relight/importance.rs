@@ -69,8 +69,8 @@ pub struct Importance {
 pub struct Response {
     /// Mean radiance of the target per channel, in the unit of the texture's values (usually cd/m²).
     pub light: Estimate,
-    /// The response computed with cells of twice the side, minus `light.mean`. Where the importance is smooth, it is
-    /// three times the error that the size of the cells causes, plus noise.
+    /// The response computed with cells of twice the side, minus `light.mean`. Where the importance is smooth, this
+    /// difference is three times the error that the size of the cells causes, plus noise.
     pub resolution_difference: DVec3,
     measured: Vec<DVec3>,
 }

@@ -67,7 +67,8 @@ pub fn photo_colour(
     })
 }
 
-/// Returns the mean colour of the selected pixels. Pixels with NaN or infinite values are ignored.
+/// Returns the mean colour of the selected pixels. Pixels with NaN or infinite values are ignored. `None` if no pixel
+/// is left.
 fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bool) -> Option<PhotoColour> {
     let colours = photo.data.chunks_exact(photo.channels).map(|p| Vec3::new(p[0], p[1], p[2])).enumerate();
     let selected = &selected;

@@ -230,7 +230,7 @@ impl Search {
         let rotation = DMat2::from_angle(pose.rotation);
         let Cells { width, height, importance } = &self.cells;
         let cell = DVec2::new(1.0 / *width as f64, 1.0 / *height as f64);
-        // Choose the pyramid level at which a cell covers one texel.
+        // Choose the pyramid level at which a cell covers the area of one texel.
         let texels = pose.scale.element_product() * (cell * self.texels).element_product();
         let level = 0.5 * texels.log2();
         let by_scale = DVec2::splat(0.5 / std::f64::consts::LN_2) / pose.scale;

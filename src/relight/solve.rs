@@ -104,7 +104,7 @@ fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
 
 impl Channel {
     /// Computes the scale from the target `t`, background `b` and response `r`. `E[·]` is the mean over the target's
-    /// points; the argument `mean` averages it over batches.
+    /// points. The argument `mean` averages the batches' values of `E[·]`.
     ///
     /// - Fit of the mean: `(t - E[b]) / E[r]`.
     /// - Least squares: `(t E[r] - E[b r]) / E[r²]`.
@@ -115,7 +115,8 @@ impl Channel {
         }
     }
 
-    /// Solves for the scale, with its confidence interval by the jackknife.
+    /// Solves for the scale, with its confidence interval by the jackknife. The scale is 0 if the response does not
+    /// exceed three of its standard errors (`Dark`), or if other light alone exceeds the target (`TooBright`).
     fn solve(&self, target: f64) -> Answer {
         let response = mean(&self.response);
         let noise = standard_error(&self.response);

@@ -53,9 +53,8 @@ pub struct Shape {
     stretch_error: f64,
 }
 
-/// Size and stretch of an ellipse, computed from the standard deviations along its axes. `log_size` is the logarithm of
-/// their product. `stretch` is a vector: its length is the logarithm of their ratio, and its angle is twice the angle
-/// of the long axis.
+/// Size and stretch of an ellipse whose standard deviations along its axes are a ≥ b. `log_size` is ln(a b). `stretch`
+/// is a vector of length ln(a / b), at twice the angle of the long axis.
 #[derive(Clone, Copy, Debug)]
 struct Form {
     log_size: f64,
@@ -70,7 +69,8 @@ fn axes(c: DMat2) -> ([f64; 2], DVec2) {
     ([mean + spread, (mean - spread).max(f64::EPSILON * mean)], DVec2::new(half, cross).normalize_or_zero())
 }
 
-/// Returns the covariance of a uniform ellipse after its semi-axes are shortened by `width`.
+/// Returns the covariance of a uniform ellipse after its semi-axes are shortened by `width`, but not below
+/// [`MIN_SEMIAXIS`].
 fn without_border(covariance: DMat2, width: f64) -> DMat2 {
     let (variances, double_angle) = axes(covariance);
     let [a, b] = variances.map(|variance| ((2.0 * variance.sqrt() - width).max(MIN_SEMIAXIS) / 2.0).powi(2));
