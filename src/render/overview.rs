@@ -1,5 +1,5 @@
 //! Chooses a camera for a scene that has no camera. The candidates stand near the corners of a given surface, such as
-//! the ceiling, on its lit side. The chosen camera has the most open view of all candidates.
+//! the ceiling, on its lit side. The chosen candidate sees farthest, on average over its image.
 
 use super::world::World;
 use crate::scene::surface::Surface;

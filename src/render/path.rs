@@ -44,7 +44,8 @@ pub trait Observer {
     /// the sampled direction ([`Lobes`]).
     fn scatter(&mut self, _mesh: u32, _kind: ScatterKind, _lobes: Lobes) {}
 
-    /// Returns a list to be filled with the panes between a vertex and its light sample, if the observer needs them.
+    /// Returns a list to be filled with the panes between a vertex and its light sample; `None`, the default, if the
+    /// observer does not need them.
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
         None
     }
@@ -371,7 +372,7 @@ pub(super) fn reciprocal(v: Vec3) -> Vec3 {
 /// Returns the MIS weight of a sample by the power heuristic with exponent 2. `own` is the pdf with which the sample
 /// was drawn, `other` the pdf with which the other strategy would draw it.
 fn power_heuristic(own: f32, other: f32) -> f32 {
-    // Compute the ratio first, so that no square overflows.
+    // Square the ratio of the pdfs, because the squares of the pdfs themselves might overflow.
     if own <= 0.0 {
         return 0.0;
     }

@@ -3,7 +3,8 @@
 //!
 //! The analysis multiplies each factor of a material with the smallest and the largest texel of the factor's texture.
 //! Only materials of meshes with triangles count. Tracing skips features that cannot occur, which changes no estimate.
-//! The number of bounces that matter is reported, but limits no render, since paths end by Russian roulette alone.
+//! The number of bounces that carry nearly all light ([`Requirements::bounces`]) is only reported: paths end by Russian
+//! roulette, not after this number of bounces.
 
 use super::bsdf::{BsdfParams, MIRROR_ROUGHNESS};
 use super::compiled_material::{self, CompiledMaterial};

@@ -356,7 +356,7 @@ impl Viewers {
             }
             let direction = (surface.position - primary.vertex.position).normalize_or_zero();
             let theirs = surface.normal.dot(direction);
-            // Skip primary vertices that see the back of the side that the owner's primary vertex sees.
+            // Skip primary vertices on the opposite side of the secondary surface from the path's own primary vertex.
             if !(theirs * cosine > 0.0) {
                 return None;
             }

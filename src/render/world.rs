@@ -28,7 +28,7 @@ pub struct World {
     scene: Arc<Scene>,
     accel: Arc<Accel>,
     /// Acceleration structure of the triangles around the path vertices (see `vicinity`). `None` until a render has
-    /// recorded where its vertices lie, and if such a structure would save little time.
+    /// recorded where its vertices lie. Also `None` if such a structure would save little time.
     vicinity: Option<Arc<Vicinity>>,
     /// Whether renders may build the structure `vicinity`.
     may_build_vicinity: bool,
@@ -130,8 +130,8 @@ impl World {
         self.any_see_through = true;
     }
 
-    /// Makes renders use one selector for all lights, whether or not the lights reach the surfaces in view. Tests and
-    /// benchmarks use this function to measure how much learning helps.
+    /// Makes renders treat all lights alike, whether or not the lights reach the surfaces in view. Tests and benchmarks
+    /// use this function to measure how much learning helps.
     pub fn disable_learning(&mut self) {
         self.lights.learns = false;
     }
@@ -212,8 +212,9 @@ impl World {
         (position.as_dvec3() + self.centre).as_vec3()
     }
 
-    /// Returns the meshes of the scene, followed by the faces of its lights: one mesh per light, without triangles for
-    /// a light that shines from a point, or no meshes if no light has faces.
+    /// Returns the meshes of the scene, followed by the faces of its lights. There is one mesh of faces per light; it
+    /// has no triangles if the light shines from a point. If no light of the scene has faces, only the meshes of the
+    /// scene are returned.
     pub fn meshes(&self) -> impl Iterator<Item = &Mesh> {
         self.scene.meshes.iter().chain(&*self.faces)
     }

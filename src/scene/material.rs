@@ -41,7 +41,7 @@ pub struct Material {
     pub metallic: f32,
     /// Perceptual roughness in `[0, 1]`; its square is the width parameter α of the GGX distribution.
     pub roughness: f32,
-    /// The green channel holds the roughness, the blue channel the metalness.
+    /// The green channel is a factor of `roughness`, the blue channel a factor of `metallic`.
     pub metallic_roughness_texture: Option<TextureRef>,
     pub normal_texture: Option<TextureRef>,
     pub normal_scale: f32,

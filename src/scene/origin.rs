@@ -1,4 +1,5 @@
-//! Finds the place where most of a scene lies. Positions relative to it are small enough for `f32`.
+//! Finds the place where most of a scene lies. Most positions relative to this place are small, so that `f32` stores
+//! them precisely.
 
 use glam::DVec3;
 

@@ -129,8 +129,8 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     let error = (renders.iter().map(|(_, output)| mean(&square(&output.image))).sum::<f64>() / n).sqrt() / unit;
     let stated = (renders.iter().map(|(_, output)| output.error.powi(2)).sum::<f64>() / n).sqrt();
     assert!(stated > 0.7 * error && stated < 1.4 * error, "error {stated} stated, {error} measured");
-    // The intervals contain the truth for the nominal 95 % of the values. They are widened by the noise of the
-    // reference.
+    // The intervals contain the truth for the nominal 95 % of the values. The reference itself is noisy, so its error
+    // is added to the half-widths of the intervals.
     let inside = |output: &denoise::Output| {
         let half_widths = output.interval.data.iter().zip(&reference.variance.data);
         let half_widths = half_widths.map(|(&own, variance)| own.hypot(1.96 * variance.sqrt()));
@@ -168,12 +168,13 @@ fn a_render_adds_a_preview_and_only_the_requested_layers() {
     let names: Vec<&str> = film.layers.iter().map(|l| l.name.as_str()).collect();
     assert_eq!(names, ["Normal", "Depth"]);
     let preview = film.preview.unwrap();
-    // The preview leaves the main image unchanged, and has a smaller error.
+    // The preview leaves the main image unchanged, and has a smaller error than the main image.
     let plain = render(&world, &camera, &Params { preview: 0.0, ..params.clone() });
     assert!(plain.preview.is_none() && plain.beauty == film.beauty);
     let truth = render(&world, &camera, &Params { preview: 0.0, samples: 256, seed: 9, ..params.clone() }).beauty;
     let (before, after) = (rel_mse(&film.beauty, &truth), rel_mse(&preview.image, &truth));
-    // With path sharing, errors are small and correlated between neighbours, so that the filter gains less.
+    // Path sharing makes the errors of neighbours small but correlated, and averaging neighbours removes correlated
+    // errors less well. So the filter need only halve the error here.
     assert!(after < before / 2.0, "from {before} to {after}");
     // At a tiny strength, the filter only averages the two halves.
     let weak = render(&world, &camera, &Params { preview: 1e-12, ..params.clone() }).preview.unwrap().image;

@@ -1,4 +1,5 @@
-//! Tests of luminaires that shine from faces: closed forms of the near field, the far field, flux, and luminance.
+//! Tests of luminaires that shine from faces: the illuminance near the faces and far from them, the flux, and the
+//! luminance in pictures.
 
 use super::*;
 use crate::exec::Pool;

@@ -37,8 +37,8 @@ fn open() -> Scene {
     scene
 }
 
-/// Returns the largest difference between the sum of all layers and the main image, relative to the value of the
-/// pixel.
+/// Returns the largest difference between the sum of all layers and the main image, relative to the value of the main
+/// image at the same pixel.
 fn sum_error(film: &Film) -> f32 {
     let n = film.beauty.data.len();
     (0..n)
