@@ -172,8 +172,8 @@ impl Place {
     }
 }
 
-/// Returns the conversion from stated chromaticities to Rec.709. If `neutral` is stated, that chromaticity becomes
-/// white.
+/// Returns the colour space with the stated chromaticities, or those of Rec.709 if only `neutral` is stated. The
+/// chromaticity `neutral` becomes white; without it, the stated white does. `Unstated` if the file states neither.
 fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32>>) -> Space {
     let point = |v: ex::Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
     let chromaticities = match stated {

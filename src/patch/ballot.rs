@@ -12,7 +12,7 @@ pub(super) struct Ballot<'a> {
     pub style: &'a Image,
     /// Width of a patch.
     pub patch: usize,
-    /// Mean of the distances of all matches.
+    /// Mean of the distances of all matches, at least 1.
     scale: f64,
 }
 

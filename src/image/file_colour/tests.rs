@@ -325,7 +325,7 @@ fn adobe_rgb_is_known_by_its_exif_notes() {
     };
     let jpeg = |notes: &[u8]| {
         let file = jpeg(&display_p3());
-        // Cut out the two pieces of the profile.
+        // Replace the two segments that hold the profile by one segment with the EXIF block.
         let pieces = display_p3().len() + 2 * 18;
         let length = (2 + 6 + notes.len()) as u16;
         [&file[..2], &[0xff, 0xe1], &length.to_be_bytes(), b"Exif\0\0", notes, &file[2 + pieces..]].concat()

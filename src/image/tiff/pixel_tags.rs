@@ -214,7 +214,7 @@ impl<'a> PixelTags<'a> {
         [self.width.div_ceil(self.chunk[0]), self.height.div_ceil(self.chunk[1])]
     }
 
-    /// Iterates over the chunks of all planes whose samples are used.
+    /// Iterates over the chunks that hold colours or alpha. In a planar file, the chunks of other samples are left out.
     pub fn chunks(&self) -> impl Iterator<Item = Chunk> + use<> {
         let ([across, down], [width, height]) = (self.grid(), self.chunk);
         let (picture_width, picture_height) = (self.width, self.height);
