@@ -134,7 +134,6 @@ impl Segmentation {
         )
     }
 
-    /// The number of pixels divided by the number of samples drawn from the strokes.
     fn per_sample(&self, pixels: usize) -> f64 {
         pixels as f64 / (self.samples[0] + self.samples[1]).max(1) as f64
     }
@@ -214,10 +213,10 @@ pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
     )
 }
 
-/// Warns if the painted lamps are hardly brighter than the plane. Compares the lamp strokes with two sets: the
-/// positive plane strokes together with the strokes marked "not light", and the "not light" strokes alone. A plane
-/// stroke may cross lamps, whereas "not light" strokes lie beside them. The set that shows the greater difference
-/// counts. The first channel of the features is L*.
+/// Warns if the painted lamps are hardly brighter than the plane. Compares the lamp strokes with two sets: the positive
+/// plane strokes together with the strokes marked "not light", and the "not light" strokes alone. A plane stroke may
+/// cross lamps, whereas "not light" strokes lie beside them. Of the two comparisons, the one in which lamps are
+/// brighter with the greater probability counts (see `brighter`). The first channel of the features is L*.
 pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Option<Warning> {
     let lamps: Vec<&Stroke> = lights.iter().filter(|s| s.positive).collect();
     let beside = || lights.iter().filter(|s| !s.positive);

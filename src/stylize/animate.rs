@@ -28,8 +28,8 @@ const BLOCK: usize = 24;
 /// A patch is astride a silhouette if the motion of one of its pixels differs from the motion of its centre by more
 /// than this, in pixels along x or y. [bench sequences]
 const MAX_SPREAD: f32 = 1.0;
-/// A patch is matched anew when the light has changed by this much since its match was chosen, as a root mean square
-/// over the guides of light, encoded for display. [bench sequences]
+/// A patch is matched anew when the light on it has changed by more than this since its match was chosen: the weighted
+/// root mean square over the channels of light, encoded for display (white = 1). [bench sequences]
 const MAX_CHANGE: f32 = 0.02;
 
 /// The matches of the previous frame, advected into this frame.
@@ -102,8 +102,8 @@ pub(super) fn keep(
     let block = |i: usize| [(i % field.width / BLOCK) as u64, (i / field.width / BLOCK) as u64];
     let stays = |i: usize| Rng::new(seed, &block(i)).next_f32() < params.coherence;
     let is_lit_alike = |i: usize| {
-        // Each block has its own limit, 0.5 to 1.5 times `MAX_CHANGE`, so that slow changes of light do not rematch
-        // the whole picture in one frame.
+        // Each block has a limit of its own, 0.5 to 1.5 times `MAX_CHANGE`. Under a slow change of light, the blocks
+        // therefore rematch in different frames.
         let share = 0.5 + Rng::new(2, &block(i)).next_f32();
         memories.is_none_or(|(before, now)| now.change(i, before, from[i] as usize) <= share * MAX_CHANGE)
     };

@@ -8,7 +8,8 @@
 //! - Two paints for one light: of the blocks elsewhere with equal guides, a quarter or more differ clearly from the
 //!   median paint of all of them.
 //!
-//! Both are measured in units of the medium's own grain: the difference that blocks with equal guides typically have.
+//! Both are measured in units of the medium's grain: the typical difference between the mean paint of a block and the
+//! median paint of all blocks with equal guides.
 
 use super::guides::SIMILAR;
 use super::level::Problem;

@@ -56,7 +56,7 @@ pub(super) struct Channels {
 
 impl Channels {
     /// Combines the guides. If `half`, halves their resolution, so that all further work handles a quarter of the
-    /// pixels.
+    /// pixels. `match_appearance`: see `Params::match_appearance`.
     pub fn new(guides: &[Guide], match_appearance: f32, half: bool, job: Job) -> Result<Self> {
         let first = guides.first().ok_or_else(no_guides)?;
         let count: usize = guides.iter().map(|g| g.source.channels).sum();

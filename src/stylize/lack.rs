@@ -18,8 +18,8 @@ const SAMPLES: usize = 128;
 const STEPS: f32 = 32.0;
 /// Maximum number of different rounded guide values of the exemplar with which the target is compared.
 const MAX_CODES: usize = 2048;
-/// Side, in samples, of the blocks into which the target is divided. The block with the most samples whose light the
-/// exemplar lacks gives the place of the warning.
+/// Side, in samples, of the square blocks into which the target is divided. The place of the warning is the centre of
+/// the block with the most samples whose light the exemplar lacks.
 const BLOCK: usize = 8;
 
 /// The part of the target whose light the exemplar lacks.

@@ -18,7 +18,7 @@ const GRADIENT_SMOOTHING: f32 = 1.0;
 const LEVELS_PER_L: f32 = 2.55;
 /// Brightness levels per doubling of L* above 100. Only photos with values above white reach them. [convention]
 const LEVELS_PER_DOUBLING: f32 = 32.0;
-/// The highest level. [convention]
+/// The highest brightness level. [convention]
 const MAX_LEVEL: f32 = 1023.0;
 
 /// The brightness and colour of the photo, prepared for the component tree.
@@ -169,8 +169,8 @@ impl OnFace {
     }
 }
 
-/// Lengths of the axes of the ellipse with the second moments xx, yy and xy, the long one first. `pixel`, the variance
-/// within a pixel, is added to xx and yy.
+/// Lengths of the axes of the ellipse with the central second moments xx, yy and xy, the long axis first. `pixel` is
+/// the variance within a pixel. It is added to xx and yy, and is the least variance along an axis.
 fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
     let (mean, spread) = (0.5 * (xx + yy) + pixel, (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
     [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
@@ -244,8 +244,9 @@ impl Regions {
     }
 
     /// Adds the edge between two neighbouring pixels to the contours of all nodes that contain the brighter pixel but
-    /// not the darker one. The sums go to the smallest node of the brighter pixel and are subtracted at the smallest
-    /// node of the darker pixel, so they cancel in common ancestors when `Tree::accumulate` adds up the nodes.
+    /// not the darker one. Gradient and length are added at the smallest node of the brighter pixel, and subtracted at
+    /// the smallest node of the darker pixel. When `Tree::accumulate` sums over subtrees, they therefore cancel in
+    /// every node that contains both pixels.
     fn add_edge(&mut self, tree: &Tree, photo: &Brightness, i: usize, j: usize) {
         let (a, b) = (tree.node_of[i] as usize, tree.node_of[j] as usize);
         if a == b || photo.levels[i] == photo.levels[j] {
