@@ -5,8 +5,8 @@
 //! Glare sources are the 4-connected regions of at least a threshold luminance. Rating each luminaire by its mean
 //! luminance would underestimate the glare of emissive textures, which are not uniform (Scheir et al. 2017). The
 //! background luminance is the mean over the rest of the image, weighted by the contribution of each pixel to the
-//! illuminance at the eye; a wider image makes this mean more accurate. The position index is Guth's above the line of sight,
-//! and that of Iwata and Tokura (1997) below, as in `evalglare`.
+//! illuminance at the eye; a wider image makes this mean more accurate. The position index is Guth's above the line of
+//! sight, and that of Iwata and Tokura (1997) below, as in `evalglare`.
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour, try_vec};
