@@ -53,7 +53,9 @@ pub(super) struct Branch {
     /// Half the total surface area of all leaf boxes below this branch. It approximates the area of the leaves'
     /// triangles, because most leaf boxes are flat.
     pub surface: f32,
-    /// `cost[i]` is the minimum expected cost of this branch when at most `i + 1` wide subtrees represent it.
+    /// `cost[i]` is the minimum expected cost of this branch when at most `i + 1` wide subtrees represent it. A node
+    /// costs half the area of its box; a packet costs [`PACKET_COST`] times half the area of its box. The common
+    /// divisor, half the area of the scene's box, is left out.
     pub cost: [f32; 7],
 }
 

@@ -4,8 +4,8 @@
 use super::statistics::nearest_distances;
 use glam::DVec2;
 
-/// Only pairs of points up to this distance apart are compared. It is a multiple of the mean distance between nearest
-/// neighbours. [convention: part of the definition of this statistic]
+/// Maximum distance between the two points of a pair that is compared, as a multiple of the mean distance between
+/// nearest neighbours. [convention: part of the definition of this statistic]
 const MAX_DISTANCE: f64 = 2.5;
 /// Half width of the Epanechnikov kernel that smooths the distances, as a multiple of the mean distance between nearest
 /// neighbours. Stoyan and Stoyan recommend 0.15 / √λ for a density of λ points per area; on a square lattice, 1 / √λ is

@@ -25,8 +25,9 @@ use sites::Sites;
 /// Unwarping magnifies such a part at most this many times as much as the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
 /// Limits for shifts that are proposed as periods. `MIN_CORRELATION`: minimum autocorrelation of the lights at the
-/// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of the autocorrelation at the shift to the highest one at any
-/// shift, less an allowance for chance. `MAX_SHIFTS`: maximum number of shifts. [judged on 20 photos]
+/// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of the autocorrelation at the shift to that of the best shift. The
+/// latter is lowered by its error, as in [`lattice::shifts`]. `MAX_SHIFTS`: maximum number of shifts.
+/// [judged on 20 photos]
 const MIN_CORRELATION: f32 = 0.35;
 const MIN_RELATIVE_CORRELATION: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
@@ -223,9 +224,9 @@ impl Analysis {
         Ok(())
     }
 
-    /// Proposes laws from the whole exemplar and from each of its sharper parts: one with the threshold
-    /// `min_regularity`, and several rows and lattices with looser thresholds. Also proposes lattices and rows along
-    /// the axes from the distances between lamps.
+    /// Proposes laws. From the whole exemplar, and from each of its sharper parts, come one law with the threshold
+    /// `min_regularity`, and several rows and lattices with looser thresholds. Further lattices and rows along the axes
+    /// come from the distances between lamps.
     fn propose(&self, evidence: &Evidence, whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();

@@ -29,8 +29,8 @@ const MAX_SITES: usize = 20_000;
 /// A site: a position in the lattice cell at which lamps lie.
 #[derive(Clone, Debug)]
 pub struct Site {
-    /// Position of the site in unwarped pixels: the mean position of its lamps, after each is moved by whole periods
-    /// next to the first lamp.
+    /// Position of the site in unwarped pixels: the mean position of its lamps, weighted by their photo pixels, after
+    /// each lamp is moved by whole periods next to the first one.
     pub at: DVec2,
     /// The lamps at this site, sorted by their number of photo pixels, largest first.
     pub lamps: Vec<MeasuredLamp>,

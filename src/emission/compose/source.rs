@@ -35,7 +35,7 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
 }
 
 /// A lamp that is drawn from a design gets its colours from the inner part of the lamp in the photo only, because the
-/// rim of the lamp is blurred there. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum side of the inner
+/// photo blurs the rim of the lamp. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum side of the inner
 /// part, as a share of the lamp's side. [judged on 20 photos]
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
@@ -170,7 +170,8 @@ impl TexelSource<'_> {
     }
 
     /// The mean colour of the light over a square with the centre `p`, from the photo. Where the photo does not show
-    /// the square, the unwarped image is interpolated at `p` instead. `lamp` is the label of the component at `p`.
+    /// the square, the unwarped image is interpolated at `p` instead, between those pixels of `taps` whose label
+    /// `is_shown` selects. `lamp` is the label of the component at `p`, whose clipped colours are replaced.
     fn colour(
         &self,
         p: DVec2,
