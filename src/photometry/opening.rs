@@ -28,7 +28,8 @@ pub enum Opening {
     Ellipsoid(DVec3),
 }
 
-/// A flat part of an opening as seen from a direction: a parallelogram or an ellipse.
+/// A flat face, a parallelogram or an ellipse, that stands for a luminous part of an opening. It holds for one viewing
+/// direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     pub centre: DVec3,
@@ -104,7 +105,8 @@ impl Opening {
         }
     }
 
-    /// Returns the luminous area in m² as seen from a unit direction, with dark parts of a box's sides left out.
+    /// Returns the projected luminous area in m², as seen from far away along the unit vector `direction`. Dark parts
+    /// of a box's sides are left out.
     pub fn projected_area(&self, direction: DVec3) -> f64 {
         let u = direction.abs();
         match *self {
@@ -121,7 +123,7 @@ impl Opening {
         }
     }
 
-    /// Returns the largest of the areas in m² as seen along x, y and z.
+    /// Returns the largest projected luminous area in m², as seen from ±x, ±y and ±z.
     pub fn largest_area(&self) -> f64 {
         DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).map(|u| self.projected_area(u)).fold(0.0, f64::max)
     }

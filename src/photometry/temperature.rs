@@ -151,8 +151,8 @@ fn to_xyz() -> DMat3 {
 mod tests {
     use super::*;
 
-    /// The published chromaticities of standard illuminants (CIE 15, table T.3) give their temperatures and distances
-    /// Duv.
+    /// Tests the temperatures and Duv of standard illuminants against published values, given their published
+    /// chromaticities (CIE 15, table T.3).
     #[test]
     fn standard_illuminants() {
         for (xy, kelvin, duv) in [

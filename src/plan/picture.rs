@@ -13,8 +13,8 @@ use crate::scene::Camera;
 const MIN_PATHS: f64 = REPLICATIONS as f64;
 /// Maximum number of paths per pixel. [convention]
 const MAX_PATHS: f64 = (1u32 << 20) as f64;
-/// Number of paths per pixel after which adaptive sampling starts if there is a target error, as in the renderer.
-/// [convention]
+/// Number of paths per pixel after which adaptive sampling starts if there is a target error; the renderer uses the
+/// same number. [convention]
 const ADAPTIVE_FROM: f64 = pilot::MIN_UNIFORM_PATHS as f64;
 
 /// A planned rendering.

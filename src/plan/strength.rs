@@ -10,7 +10,7 @@ use crate::render::World;
 use glam::Vec3;
 
 /// Number of paths per trial solution (`TRIAL`), and number of timed trials (`TRIALS`). Several trials are averaged,
-/// because the standard error that a trial reports is known only to within 13 %.
+/// because the standard error that one trial reports has itself a relative standard error of 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
 /// Constant that is XORed with the seed of the solution, so that the trials trace other random paths than the solution.
@@ -28,7 +28,8 @@ const HALF_WIDTH: f64 = 2.04;
 /// Measured cost and error of the solution for the emission's strength.
 pub(super) struct Strength {
     seconds_per_path: f64,
-    /// Relative half-width of the confidence interval of a trial, as a root mean square over the trials.
+    /// Half-width of the confidence interval of a trial's solution, relative to the solution; the root mean square over
+    /// the trials.
     half_width: f64,
 }
 

@@ -35,7 +35,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let orthogonal = &found.points[..found.points.len().min(3)];
     let Focal { focal, spread: focal_spread, source } = focal_length(orthogonal, principal, params.focal, expected);
 
-    // Drop each direction that is far from orthogonal to a direction with better support: it is not a room axis.
+    // Drop each direction within 66 degrees of a direction with better support: it is not a room axis.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
     let mut chosen: Vec<usize> = Vec::new();
     for (k, p) in orthogonal.iter().enumerate() {

@@ -25,7 +25,7 @@ pub struct Distortion {
     pub corner: f64,
     /// Standard deviation of `corner`, including the deviation of real lenses from this model.
     pub error: f64,
-    /// Number of traced segments that are consistent with the estimate.
+    /// Number of traced segments whose estimate of k lies within the biweight's limit around `corner`.
     pub segments: usize,
 }
 
@@ -208,7 +208,8 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
 }
 
 /// Returns the result of one step of the M-estimate: the weighted mean over the segments within the biweight's limit
-/// around `corner`. Its standard deviation follows from the scatter of these segments and from [`MODEL_ERROR`].
+/// around `corner`. The standard deviation of the mean follows from the scatter of these segments and from
+/// [`MODEL_ERROR`].
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
     let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off).unwrap_or(0.0)).max(1.0);

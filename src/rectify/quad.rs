@@ -23,8 +23,8 @@ pub struct Rectangle {
     pub finest_pixel_side: f64,
 }
 
-/// Finds the rectangle with the highest score: the number of its cells that the mask marks and the photo resolves well
-/// enough, minus `HOLE` times the number of its other cells. `max_magnification` is relative to the best-resolved part
+/// Finds the rectangle with the highest score: the number of its cells that the mask marks and whose magnification is
+/// allowed, minus `HOLE` times the number of its other cells. `max_magnification` is relative to the best-resolved part
 /// of the plane.
 pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
     // Keep the pixels on the camera's side of the horizon, each with the size of the square that it covers on the

@@ -155,9 +155,9 @@ impl Grower<'_> {
         }
     }
 
-    /// Collects the pixels connected to the seed whose gradients agree with the region's mean direction. Adds the
-    /// neighbours of the region one layer at a time. Each layer is compared with the mean direction of all layers
-    /// before it, so that the result does not depend on the order of pixels.
+    /// Collects the pixels connected to the seed whose gradients agree with the mean gradient direction of the region.
+    /// Adds the neighbours of the region one layer at a time. Each layer is compared with the mean direction of all
+    /// layers before it, so that the result does not depend on the order of pixels.
     fn grow(&mut self, seed: u32, tolerance: f64) {
         let Gradients { width, derivative, magnitude, .. } = self.gradients;
         let min_cos = tolerance.cos() as f32;

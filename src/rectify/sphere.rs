@@ -71,7 +71,7 @@ impl Frame {
         segments.iter().enumerate().filter_map(|(i, s)| prepare(s).map(|line| (i, WeightedLine::new(line)))).collect()
     }
 
-    /// Converts a homogeneous point of the frame to homogeneous pixels of unit length.
+    /// Converts a homogeneous point of the frame to homogeneous pixel coordinates, normalised to unit length.
     pub fn to_pixels(&self, p: DVec3) -> DVec3 {
         // Treat a third coordinate that is only rounding error as a point at infinity.
         let w = if p.z.abs() <= 1e-13 * p.truncate().length() { 0.0 } else { p.z };

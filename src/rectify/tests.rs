@@ -518,9 +518,8 @@ fn skewed(truth: &Perspective, skew: f64, tall: f64, noise: f64, seed: u64) -> V
 
 #[test]
 fn right_angles_are_measured_within_the_stated_error() {
-    // If no focal length is given, the reported errors are conservative. An error of one direction affects both an
-    // angle and the focal length at which the angle is evaluated; these effects are correlated, which the estimate
-    // ignores.
+    // If no focal length is given, the reported errors are too large. An error of one direction affects both an angle
+    // and the focal length at which the angle is evaluated. The estimate ignores that these two effects are correlated.
     for (focal, range) in [(Some(700.0), 0.6..1.4), (None, 0.2..1.4)] {
         let (mut sum, mut count) = (0.0, 0.0);
         for seed in 0..60 {

@@ -106,7 +106,7 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
         }
         aspect_variance += ((aspect(corners) - aspect(&still)) / SMALL).powi(2);
     }
-    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio. [convention]
+    // A confidence of one half corresponds to a relative standard deviation of 10 % of the aspect ratio. [convention]
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }
 }
 

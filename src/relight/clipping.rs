@@ -20,7 +20,7 @@ const CLIPPED: f32 = 0.987;
 /// The line between two channels is fitted only if at least this share of the pixels is unclipped in both.
 /// [origin not recorded]
 const MIN_UNCLIPPED_SHARE: f64 = 0.02;
-/// Strength of the regularisation of the fitted line. If the relative standard deviation of the plane's brightness is
+/// Strength of the regularisation of the fitted line. If the relative standard deviation of the predicting channel is
 /// smaller than this, the line runs nearly through black; if it is larger, the line follows the pixels.
 /// [origin not recorded]
 const RIDGE: f64 = 0.05;

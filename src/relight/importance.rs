@@ -235,7 +235,7 @@ impl Importance {
         Ok(rows.into_iter().flatten().collect())
     }
 
-    /// Computes the response with 2 × 2 cells merged into one, for the estimate of the error.
+    /// Computes the response with 2 × 2 cells merged into one, to estimate the error that the size of the cells causes.
     fn coarse(&self, emission: &[DVec3]) -> DVec3 {
         let mut total = DVec3::ZERO;
         for y in (0..self.height).step_by(2) {

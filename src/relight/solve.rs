@@ -57,7 +57,8 @@ pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3
     let scale = answers.each_ref().map(|a| if a.status == TargetStatus::Dark { neutral } else { a.scale });
     let response = DVec3::from(channels.each_ref().map(|c| mean(&c.response)));
     let background = DVec3::from(channels.each_ref().map(|c| mean(&c.background)));
-    // The achieved light: the target in exact channels, the scaled light in channels with limits.
+    // The achieved light: the target in channels with exact targets, the background plus the scaled response in
+    // channels with limits.
     let light = background + DVec3::from(scale) * response;
     let seen =
         DVec3::from(std::array::from_fn(|c| if constraint[c] == Constraint::Exactly { target[c] } else { light[c] }));

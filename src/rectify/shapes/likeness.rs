@@ -22,15 +22,15 @@ const MIN_INCIDENCE: f64 = 0.05;
 /// Cost of the assumption that all lamps are elongated by the same ratio in the same direction. The cost is needed
 /// because this assumption adds two parameters, and most lamps are as long as they are wide. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
-/// Squared deviation of a shape, divided by its variance, above which its cost grows more slowly, because the shape is
-/// probably of another kind. [convention]
+/// Limit of a shape's squared deviation, divided by the variance of the deviation. Beyond it the cost grows more
+/// slowly, because the shape is probably of another kind. [convention]
 const OUTLIER: f64 = 4.0;
 /// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention]
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 
 /// `BLOOMS`: widths of bloom (the bright margin around overexposed lamps) that are tried, in units of [`BLOOM_UNIT`].
-/// `BLOOM_SPREAD`: prior standard deviation of the width. Bloom lengthens the semi-axes of all regions by its width.
-/// [bench photos:tune]
+/// `BLOOM_SPREAD`: prior standard deviation of the width, in the same unit. Bloom lengthens the semi-axes of all
+/// regions by its width. [bench photos:tune]
 const BLOOMS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 const BLOOM_SPREAD: f64 = 1.5;
 /// Unit of bloom as a share of the photo's longer side: one pixel in a photo of 640 pixels. [convention]

@@ -20,8 +20,8 @@ const FOCAL_STEP: f64 = 0.4;
 /// [bench photos:tune]
 const KNOWN_FOCAL: f64 = 0.1;
 /// Step of the finite differences that measure the curvature of the cost at its minimum, in radians and in the
-/// logarithm of the focal length. A wide step smooths the kinks that medians and limits make in the cost.
-/// [bench photos:tune]
+/// logarithm of the focal length. A wide step smooths the kinks of the cost, which its medians and its clamped terms
+/// cause. [bench photos:tune]
 const WIDTH: f64 = 0.02;
 /// Number of tilts of the coarse search that are refined. [bench photos:tune]
 const STARTS: usize = 12;
