@@ -24,7 +24,7 @@ const CV_SAMPLES: usize = 250;
 /// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 /// [origin not recorded]
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
-/// A fit ends with the step whose expected decrease of the objective (see `logistic::fit`) is below this value.
+/// A fit ends with the first step whose expected decrease of the objective (see `logistic::fit`) is below this value.
 /// `CV_PRECISION` applies to fits that only compare models. With the default number of samples, the price of a term is
 /// 1 / 2000 (see [`choose`]), which is 50 times `CV_PRECISION`. `PRECISION` applies to the final fit. Newton's method
 /// converges quadratically: after a step that lowers the objective by d, a further decrease of the order of d² remains.

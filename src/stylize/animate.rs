@@ -77,9 +77,12 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Moved> {
 /// The memories of the previous frame and of this frame.
 pub(super) type Memories<'a> = Option<(&'a Memory, &'a Memory)>;
 
-/// Computes the distances of the advected matches, and returns which target patches keep their match: the patches whose
-/// error lies left of the knee of the sorted errors, whose light has hardly changed (if `memories` are given), and
-/// which are not astride a silhouette. Blocks that [`Params::coherence`] chooses for new matches keep nothing.
+/// Computes the distances of the advected matches, and returns which target patches keep their match. A patch keeps its
+/// match if all of these conditions hold:
+/// - The error of the match lies left of the knee of the sorted errors.
+/// - The light on the patch has hardly changed since the match was chosen; always true without `memories`.
+/// - The patch is not astride a silhouette, and its centre was visible in the previous frame.
+/// - [`Params::coherence`] does not choose the block of the patch for new matches.
 pub(super) fn keep(
     level: &mut Level,
     moved: &mut Moved,

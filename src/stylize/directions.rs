@@ -179,8 +179,9 @@ impl<'a> Scale<'a> {
         if self.guide.range == Range::Light { linear_to_srgb(v) } else { v }
     }
 
-    /// Appends the mean of each channel at some places, times the square root of the channel's weight. Returns the
-    /// weighted variance. `weight` is the weight of all channels together.
+    /// Appends to `means` the mean of each channel over `places`, times the square root of the channel's weight.
+    /// Returns the variance over `places`, weighted and summed over the channels. `weight` is the weight of all
+    /// channels together.
     fn means(&self, places: &[[usize; 2]], weight: f32, means: &mut Vec<f32>) -> f32 {
         let (channels, count) = (self.guide.source.channels, places.len() as f32);
         let weight = weight / channels as f32;
@@ -277,7 +278,7 @@ fn compare(blocks: &[Block], own: &Block, weight: f32) -> Option<[f64; 3]> {
     (other_normals > SIMILAR).then(|| [sum / count, light_turn, turn].map(|t| f64::from(t).to_degrees()))
 }
 
-/// The nearest blocks so far by their distance: the distance, and two values to average.
+/// The [`FOUND`] nearest blocks so far, in order of distance: for each, the distance and two values to average.
 struct Nearest([(f32, [f32; 2]); FOUND]);
 
 impl Nearest {

@@ -40,7 +40,8 @@ const TWO_PAINTS: f32 = 4.0;
 /// Defects of the exemplar, with their places in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Doubts {
-    /// Largest difference, in grains, of a block to the blocks elsewhere with similar guides, and the block's centre.
+    /// Largest difference of a block from the blocks elsewhere with similar guides (the 5 % quantile over these
+    /// blocks), in grains; and the centre of this block in pixels.
     pub blemish: f64,
     pub blemish_at: Option<[usize; 2]>,
     /// Share of the blocks whose light has two paints, among the blocks with at least `MIN_OTHERS` blocks of equal

@@ -105,8 +105,8 @@ struct Codes {
     weights: Vec<f64>,
 }
 
-/// Collects the distinct values of the exemplar's guides of light, inside the mask; `None` if no guide of light has a
-/// weight above 0.
+/// Collects the distinct values of the exemplar's guides of light, inside the mask, thinned to at most [`MAX_CODES`].
+/// `None` if no guide of light has a weight above 0.
 fn codes(guides: &Channels, source_mask: Option<&[bool]>) -> Result<Option<Codes>> {
     let source = &guides.source;
     let of_light = || guides.weights.iter().zip(&guides.is_light).map(|(w, &is_light)| if is_light { *w } else { 0.0 });

@@ -104,8 +104,8 @@ fn quantise<'a>(problem: &'a Problem, params: &Params, l: usize, seed: u64, job:
     Ok(level)
 }
 
-/// Returns the initial field and picture of level `l`, from the field of the next coarser level or of an earlier
-/// result.
+/// Returns the initial state of level `l`. The field comes from the next coarser level or from an earlier result, else
+/// from a search by the guides alone.
 fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, job: Job) -> Result<State> {
     let (problem, params) = (level.problem, setup.params);
     // Start from the given field, or find a field by the guides alone.

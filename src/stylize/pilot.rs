@@ -23,8 +23,8 @@ pub struct Prediction {
     pub energy: f64,
 }
 
-/// The time per pixel grows with a power of the number of pixels, because larger fields converge more slowly. This is
-/// the maximum exponent. [bench plan:stylisations]
+/// Maximum of the exponent e in: time per pixel proportional to nᵉ, where n is the number of pixels. The time per pixel
+/// grows because larger fields converge more slowly. [bench plan:stylisations]
 const MAX_GROWTH: f64 = 0.12;
 
 /// Pilot runs of several settings on one input. `ladder` holds the settings, and `usual` is the index of the reference

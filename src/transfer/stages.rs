@@ -143,8 +143,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// The room axes along the face of the room's layout that holds the plane. `None` if there is no layout, or if the
-    /// plane lies on several faces.
+    /// Indices of the two room axes along the face of the room's layout that holds the plane. `None` if there is no
+    /// layout, or if the plane lies on several faces.
     fn laid_out_axes(&self) -> Option<[usize; 2]> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), .. } = &self.results else {
             return None;
