@@ -151,8 +151,8 @@ fn to_xyz() -> DMat3 {
 mod tests {
     use super::*;
 
-    /// Tests the temperatures and Duv of standard illuminants against published values, given their published
-    /// chromaticities (CIE 15, table T.3).
+    /// The published chromaticities of standard illuminants (CIE 15, table T.3) must yield the temperatures and Duv of
+    /// these illuminants.
     #[test]
     fn standard_illuminants() {
         for (xy, kelvin, duv) in [

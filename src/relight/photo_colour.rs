@@ -34,7 +34,7 @@ pub struct PhotoColour {
 const HALO: f32 = 0.01;
 /// A photo with a value above this has values beyond white (1), so it is not clipped at white. [rounding]
 const WHITE: f32 = 1.001;
-/// If a channel's value is unknown in more than this share of the pixels, its target is a lower bound.
+/// If a channel's value is unknown in more than this share of the pixels, the target of this channel is a lower bound.
 /// [convention]
 const MOSTLY: f64 = 0.5;
 
