@@ -57,7 +57,7 @@ struct Cluster {
     pair: u32,
 }
 
-/// The part of the tree's pairs that a range of leaves may fill.
+/// The pairs of the tree that a range of leaves may fill.
 struct NewPairs<'a> {
     pairs: &'a mut [Pair],
     parents: &'a mut [u32],
@@ -87,8 +87,8 @@ impl NewPairs<'_> {
     }
 }
 
-/// A range of leaves along the space-filling curve, with its clusters. It owns as many unfilled pairs as it has
-/// leaves: one more than it needs to join them all.
+/// A range of leaves along the space-filling curve, with its clusters. It owns one unfilled pair per leaf. Joining all
+/// n leaves fills n - 1 of these pairs; the last cluster keeps the remaining one in reserve.
 struct Range<'a> {
     leaves: &'a [Bvh2Node],
     order: &'a [(u64, u32)],

@@ -126,7 +126,7 @@ struct Open {
     /// Index of the parent node in [`Wide::lines`], and the lane of that node which holds this child; `None` for the
     /// root.
     parent: Option<(usize, usize)>,
-    /// Number of entries on the traversal stack when a ray visits this node.
+    /// Maximum number of entries on the traversal stack when a ray visits this node.
     stack_depth: usize,
 }
 
@@ -136,7 +136,7 @@ struct DeferredChild {
     at: Place,
     node: usize,
     lane: usize,
-    /// Number of entries on the traversal stack when a ray visits this child.
+    /// Maximum number of entries on the traversal stack when a ray visits this child.
     stack_depth: usize,
 }
 

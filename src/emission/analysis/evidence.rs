@@ -22,7 +22,7 @@ pub struct Evidence {
     /// the number of photo pixels of the visible part. Always empty for a luminous ceiling, because it is not known at
     /// which bar a cut pane would end.
     pub completed: Vec<MeasuredLamp>,
-    /// The visible parts of the other lamps that the border cuts.
+    /// The visible parts of the lamps that the border cuts and whose size is unknown.
     pub parts: Vec<MeasuredLamp>,
 }
 

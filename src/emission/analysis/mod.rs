@@ -199,8 +199,8 @@ impl Analysis {
         let best = proposals.iter().fold(own, |best, p| if rank(p) > rank(&best) + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // For the panes of a luminous ceiling, prefer the best lattice if two conditions hold. It scores clearly higher
-        // than a law without a period, and no other law scores clearly higher than the lattice.
+        // For the panes of a luminous ceiling, prefer the best lattice if two conditions hold. The lattice scores
+        // clearly higher than a law without a period, and no other law scores clearly higher than the lattice.
         let panes = lattice.filter(|p| {
             exemplar.is_luminous_ceiling()
                 && p.score > SCORE_WITHOUT_PERIOD + CLEAR_MARGIN

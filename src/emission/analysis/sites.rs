@@ -169,8 +169,8 @@ impl Sites {
         };
         let (shining, dark): (Vec<DVec2>, Vec<DVec2>) = empty.into_iter().partition(shines);
 
-        // A dark position is a hole if it lies between the first and the last lamp along both periods. Beyond them, it
-        // ends the pattern on that side.
+        // A dark position is a hole if it lies between the first and the last lamp along both periods. A dark position
+        // before the first or after the last lamp along a period ends the pattern on that side.
         let lit = lamps.iter().map(|l| l.centre).chain(shining.iter().copied()).map(|p| self.cell(at, p));
         let (low, high) = lit.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), c| (a.min(c), b.max(c)));
         let mut cells = [DVec2::NEG_INFINITY, DVec2::INFINITY];

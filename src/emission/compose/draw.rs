@@ -46,7 +46,8 @@ impl Lamp {
         (self.low + self.high) / 2.0
     }
 
-    /// Area, in texels, of the intersection of both boxes after `other` is moved by `shift`.
+    /// Area, in texels, of the intersection of this lamp's box with the box of `other` after the latter is moved by
+    /// `shift`.
     fn overlap(&self, other: &Self, shift: DVec2) -> f64 {
         let sides = self.high.min(other.high + shift) - self.low.max(other.low + shift);
         sides.max(DVec2::ZERO).element_product()

@@ -155,8 +155,8 @@ impl TexelSource<'_> {
     }
 
     /// The point of the exemplar at which the colour of a designed lamp is read in place of the point `p`. The result
-    /// is `p`, unless the border of the photo cuts the lamp and hides `p`. It is then the first visible point of the
-    /// lamp on the way from `p` to the centre of the visible part.
+    /// is `p`, unless the border of the photo cuts the lamp and hides `p`. In that case, the result is the first
+    /// visible point of the lamp on the way from `p` to the centre of the visible part.
     fn shown_point(&self, component: usize, p: DVec2) -> DVec2 {
         let exemplar = &self.layer.exemplar;
         if exemplar.roles[component] != Role::Partial {
@@ -212,7 +212,7 @@ impl TexelSource<'_> {
     }
 
     /// The share of an unwarped pixel that is covered by components for whose label `is_shown` returns true. Beside a
-    /// lamp, its confidence fades out over pixels that belong to no component. These pixels count whatever `is_shown`
+    /// lamp, the confidence fades out over pixels that belong to no component. These pixels count whatever `is_shown`
     /// selects.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);

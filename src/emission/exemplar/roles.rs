@@ -31,7 +31,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// Whether the component is a lamp that the photo shows completely, or that counts as such.
+    /// Whether the component is a lamp that the photo shows completely, or that counts as whole.
     pub fn is_whole(self) -> bool {
         matches!(self, Self::Whole | Self::WholeAtBorder)
     }

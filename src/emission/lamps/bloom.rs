@@ -1,4 +1,5 @@
-//! Bloom: the light that a lens spreads around a lamp. It adds about the same number of photo pixels to every side.
+//! Bloom: the light that a lens spreads around a lamp. It lengthens every side of a lamp by about the same number of
+//! photo pixels.
 
 use glam::{DMat2, DVec2};
 
