@@ -224,7 +224,7 @@ mod tests {
                     assert!((v - f32::from(w) / 255.0).abs() < 1e-6, "{name}: {pixel:?} instead of {wanted:?}");
                 }
             }
-            // As sRGB, the colours are decoded by the curve, but alpha is not.
+            // Read as sRGB, the colours are decoded by the curve, but alpha is not.
             let curved = decode_photo(&file, Encoding::Srgb).unwrap().image;
             assert!((curved.pixel(19, 13)[1] - srgb_to_linear(99.0 / 255.0)).abs() < 1e-6);
             assert!(channels == 3 || curved.pixel(19, 13)[3] == image.pixel(19, 13)[3]);

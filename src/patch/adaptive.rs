@@ -35,7 +35,7 @@ pub(super) fn vote(out: &mut Image, ballot: &Ballot, job: Job, wanted: impl Fn(u
             }
         }
     })?;
-    // Tiles end early when the job is cancelled.
+    // If the job was cancelled, some tiles are missing: return the error.
     job.check()
 }
 
@@ -222,7 +222,7 @@ impl Power {
     fn share(&self) -> f32 {
         let surplus = self.mean - self.exemplar;
         let root = (self.product * self.product - self.difference * surplus).max(0.0).sqrt();
-        // Where mean and choice have the same detail, no share changes it: keep whole pixels.
+        // Where mean and choice have the same fine detail (D = 0), t has no effect on it: keep whole pixels.
         let share = if self.difference > 0.0 { (root - self.product) / self.difference } else { 1.0 };
         share.clamp(0.0, 1.0) as f32
     }

@@ -159,7 +159,8 @@ fn xyz(lab: Vec3) -> Vec3 {
 mod tests {
     use super::*;
 
-    /// A profile whose lightness falls with cyan and black: no ink gives white paper, full black ink gives black.
+    /// A profile whose lightness falls with the amounts of cyan and black. Paper without ink is white; full black ink
+    /// is black.
     fn inks() -> Inks {
         let size: usize = 3;
         let mut colours = Vec::new();

@@ -81,7 +81,7 @@ fn display_p3_is_converted_in_every_format() {
     assert_near(&load(&png(2, &wide, 16, &[iccp(&display_p3())])).0, wanted, 3e-4);
     let green = load(&png(2, &[0, 255, 0], 8, &[iccp(&display_p3())])).0;
     assert_near(&green, [0.0, 1.042_057, 0.0], 5e-4);
-    // In the other formats too, colours are converted in photos and unchanged in data and textures.
+    // In formats other than PNG, too, colours of photos are converted, and data and textures stay unchanged.
     for (name, file) in [
         ("JPEG", jpeg(&display_p3())),
         ("WebP", webp(&display_p3())),

@@ -278,7 +278,7 @@ pub fn unsupported(what: impl std::fmt::Display) -> Error {
 struct Chunks {
     /// Width and height in pixels of a chunk as stored.
     size: [usize; 2],
-    /// The tags whose values are the offsets of the chunks, and their sizes in bytes.
+    /// The tag that lists the offsets of the chunks (`offsets`), and the tag that lists their sizes in bytes (`bytes`).
     offsets: u16,
     bytes: u16,
 }
