@@ -193,8 +193,7 @@ fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentati
     }
 }
 
-/// Draws samples of the given channels, then chooses the model and the subset of channels with the least expected loss
-/// on held-out strokes.
+/// Draws samples of the given channels, then chooses the model and the subset of channels (see [`select::choose`]).
 fn learn(input: &Input, params: &Params, subsets: &[u32], channels: &[usize], job: Job) -> Result<(Samples, Chosen)> {
     let features = input.features;
     let (samples, probe) = exec::both(|| samples::draw(input, channels, params), || samples::probe(input, channels));

@@ -168,7 +168,7 @@ fn what_no_stroke_has_shown_is_told() {
 
 #[test]
 fn one_class_or_none_is_an_error_that_says_what_to_paint() {
-    // With colour channels only, no mask can be proposed.
+    // With two channels only, no mask can be proposed.
     let (features, _) = room();
     let features = Image::from_fn(WIDTH, HEIGHT, |x, y| [features.pixel(x, y)[0], features.pixel(x, y)[1]]).unwrap();
     let strokes = plane_strokes();

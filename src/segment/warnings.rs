@@ -230,9 +230,9 @@ pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Optio
     warning.map(|warning| warning.at(Some(features.centre_of(darkest as usize))))
 }
 
-/// Computes the probability that a random lamp pixel is brighter than a random plane pixel: the area under the
-/// receiver operating characteristic of L* (Hanley and McNeil 1982). Also returns a pixel of the lamp stroke with the
-/// least probability. `None` if there is no lamp pixel or no plane pixel.
+/// Computes the probability that a random lamp pixel is brighter than a random plane pixel: the area under the receiver
+/// operating characteristic of L* (Hanley and McNeil 1982). Also returns a pixel of one lamp stroke: the stroke whose
+/// own pixels have the least probability. `None` if there is no lamp pixel or no plane pixel.
 fn brighter(features: &Image, lamps: &[&Stroke], plane: &[&Stroke]) -> Option<(f64, u32)> {
     let lightness = |&p: &u32| features.data.get(p as usize * features.channels).copied();
     let mut plane: Vec<f32> = plane.iter().flat_map(|s| &s.pixels).filter_map(lightness).collect();

@@ -135,8 +135,8 @@ fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
     Guess { map, pairs, misfit }
 }
 
-/// Finds the map that minimises the squared distances between the marks and their predicted positions in the photo, by
-/// Gauss-Newton steps from a good start.
+/// Finds the map that minimises the sum of squared distances between the marks and their predicted positions in the
+/// photo, by Gauss-Newton steps from `start`.
 fn least_squares(page: &Page, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
     // Scale page coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
     let half = DVec2::new(page.width as f64, page.height as f64) / 2.0;

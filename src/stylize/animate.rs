@@ -2,14 +2,14 @@
 //! the motion, are kept where they still fit, so that paint sticks to objects. Three kinds of patches are matched anew:
 //!
 //! - patches whose match fits badly;
-//! - patches astride a silhouette, whose pixels do not all come from one patch of the previous frame. Their paint
-//!   would stay behind as the ghost of a contour;
+//! - patches astride a silhouette: their pixels do not all come from one patch of the previous frame. If they kept a
+//!   match, its paint would stay behind as the ghost of a contour;
 //! - patches whose light has changed since their match was chosen (`memory`). The change adds up over the frames, so
 //!   the paint follows slow changes too.
 //!
-//! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame
-//! keeps the matches of a random set of blocks. The frames then flicker as if painted by hand (after the temporal
-//! noise control of Fišer et al. 2014, "Color Me Noisy").
+//! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame keeps
+//! the matches of a random set of blocks. The frames then flicker as if painted by hand (after the temporal noise
+//! control of Fišer et al. 2014, "Color Me Noisy").
 
 use super::budget::budget;
 use super::level::{Level, Problem};

@@ -154,7 +154,7 @@ struct Scale<'a> {
     guide: &'a Guide<'a>,
     offset: f32,
     factor: f32,
-    /// Weight relative to all guides of light together.
+    /// Weight of the guide, as a share of the total weight of all guides of light.
     share: f32,
 }
 

@@ -124,8 +124,8 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     Ok(Segmentation { is_proposed, ..found })
 }
 
-/// Keeps the nodes of the component tree that are brighter than the ring of pixels around them; the other nodes are
-/// noise on a surface.
+/// Keeps the nodes of the component tree that are brighter than the ring of pixels around them by at least
+/// [`MIN_CONTRAST`]; the other nodes are taken for noise on a surface.
 fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
     let nobody = try_vec(search.tree.node_of.len(), false)?;
     let mut kept = Vec::new();

@@ -99,8 +99,8 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
     }
     nodes.iter().for_each(|&n| covered[n as usize] = 0.0);
 
-    // From the root to the leaves, choose on each path the first node that gains at least as much as the nodes inside
-    // it.
+    // From the root to the leaves, choose on each path the first node that gains at least as much as the best disjoint
+    // nodes inside it.
     let mut chosen = Vec::new();
     let mut is_within = vec![false; nodes.len()];
     for (k, &node) in nodes.iter().enumerate() {

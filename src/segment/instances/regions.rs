@@ -102,7 +102,7 @@ pub struct OnFace {
     uu: Vec<f64>,
     vv: Vec<f64>,
     uv: Vec<f64>,
-    /// Sums of the squared areas of the pixels.
+    /// For each node, the sum of the squared areas of its pixels.
     squares: Vec<f64>,
 }
 
@@ -163,7 +163,8 @@ impl OnFace {
         let mean = |sums: &[f64]| sums[node] / area;
         let (u, v) = (mean(&self.u), mean(&self.v));
         let moments = [mean(&self.uu) - u * u, mean(&self.vv) - v * v, mean(&self.uv) - u * v];
-        // Add the variance within a pixel: a twelfth of the pixel's area, on average.
+        // Add the variance within a pixel. In a square it is a twelfth of the area; take the mean over the pixels,
+        // weighted by area.
         let [long, short] = ellipse(moments, mean(&self.squares) / 12.0);
         long / short.max(f64::MIN_POSITIVE)
     }

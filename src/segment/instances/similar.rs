@@ -20,8 +20,8 @@ const CHROMA: f64 = 12.0;
 /// lamps under the strokes; both are first divided by their `sharpness`. The limit is below 1 because distant lamps are
 /// small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps
-/// under the strokes. [judged on 28 photos]
+/// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps under
+/// the strokes; both are first divided by their `sharpness`. [judged on 28 photos]
 const RING: f64 = 0.5;
 /// Minimum ratio of a lamp's solidity (see `Regions::solidity`) to the least solidity of the lamps under the strokes.
 /// [judged on 28 photos]
