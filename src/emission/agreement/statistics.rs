@@ -74,8 +74,8 @@ impl Statistics {
             let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
             ratio(counted().map(|i| place(lamps[i].0) * value(i)).sum(), weights)
         };
-        // If a cut lamp is nearer than the nearest whole lamp, the distance to the nearest lamp is unknown, because
-        // the true centre of the cut lamp is unknown.
+        // If a cut lamp is nearer than the nearest whole lamp, the distance to the nearest lamp is unknown: the centre
+        // of the cut lamp's visible part is not the lamp's centre.
         let cut = components.list.iter().zip(*whole).filter(|(_, whole)| !**whole).map(|(c, _)| c.centre);
         let mut centres: Vec<DVec2> = lamps.iter().map(|l| l.0).collect();
         let nearest = nearest_distances(&centres);

@@ -42,8 +42,8 @@ const CLEAR_MARGIN: f64 = 0.1;
 /// Let w be the number of photo pixels that show whole lamps, and t the number that show lights running through the
 /// photo. Laws are compared only if w / (w + t) is at least this. [judged on 20 photos]
 const MIN_LAMP_SHARE: f64 = 0.5;
-/// Two lattices or rows count as equal if each period of one differs from a period of the other by less than this share
-/// of the longer of the two periods. [judged on 20 photos]
+/// Two lattices or rows count as equal if their periods agree in pairs: the two periods of a pair differ by less than
+/// this share of the longer one. [judged on 20 photos]
 const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
 
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
@@ -193,8 +193,8 @@ impl Analysis {
         proposals.iter_mut().for_each(|p| *p = p.aligned(exemplar, score));
 
         // Find the proposal that ranks highest, the first one among equals. It replaces the law found in the whole
-        // exemplar only if its score is clearly higher than that of this law, and higher than that of a law without a
-        // period.
+        // exemplar only under two conditions: its score is clearly higher than the score of that law, and higher than
+        // the score of a law without a period.
         let rank = |p: &Proposal| p.rank(exemplar);
         let best = proposals.iter().fold(own, |best, p| if rank(p) > rank(&best) + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
@@ -295,8 +295,8 @@ impl Analysis {
 }
 
 /// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. Laws without a period have
-/// a fixed score. NaN if the pattern does not change along one period of the law (lines of light do not change along
-/// their length), because only the autocorrelation can judge such a period.
+/// a fixed score. NaN if the pattern does not change along one period of the law, for example along the length of lines
+/// of light. Only the autocorrelation can judge such a period.
 fn score(exemplar: &Exemplar, evidence: &Evidence, law: Law) -> f64 {
     match Sites::new(exemplar, &evidence.whole, law) {
         Some(sites) => sites.score(evidence),

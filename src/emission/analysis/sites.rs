@@ -236,8 +236,9 @@ impl Sites {
     /// - A: photo pixels of all lamps, and of lamps that a site with at least two lamps predicts but that are missing.
     /// - s: number of sites; n: number of lamps. No other lamp predicts the first lamp of a site.
     ///
-    /// A cut lamp is predicted if whole steps from a site lead to its centre or, if its size is not known, to any place
-    /// on its visible part. A cut lamp counts in n only if its size is known and it is predicted.
+    /// A cut lamp of known size is predicted if whole steps from a site lead to its centre. A cut lamp of unknown size
+    /// is predicted if they lead to any place on its visible part. A cut lamp counts in n only if its size is known and
+    /// it is predicted.
     pub fn score(&self, evidence: &Evidence) -> f64 {
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {
             true => (predicted + site.shown, all + site.shown + site.missing),

@@ -34,9 +34,9 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
     Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
 }
 
-/// A lamp that is drawn from a design gets its colours from the inner part of the lamp in the photo only, because the
-/// photo blurs the rim of the lamp. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum side of the inner
-/// part, as a share of the lamp's side. [judged on 20 photos]
+/// The colours of a lamp that is drawn from a design come from the inner part of the lamp in the photo. The photo blurs
+/// the rim of the lamp, so the rim is left out. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum side of
+/// the inner part, as a share of the lamp's side. [judged on 20 photos]
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 

@@ -5,7 +5,7 @@
 //! cases:
 //!
 //! - A lamp in one piece is as large as both lights together.
-//! - Two lights elsewhere form a pair of the same size, a narrow bar divides each of the two pairs, and no other light
+//! - Two lights elsewhere form a pair of the same size, and a narrow bar divides each of the two pairs. No other light
 //!   as large as one part lies alone or in a row of three or more.
 
 use super::bars::LitPlane;

@@ -1,5 +1,5 @@
-//! Position and size of the lamps of an exemplar, as evidence for a lattice and for kinds of lamps, weighted by the
-//! number of photo pixels that show them.
+//! Position and size of the lamps of an exemplar. They are evidence for a lattice and for kinds of lamps. The weight of
+//! a lamp is the number of photo pixels that show it.
 
 use super::components::Component;
 use super::foreshortening::LocalMap;

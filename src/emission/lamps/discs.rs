@@ -18,8 +18,8 @@ const MIN_COS_ALONG: f64 = 0.9;
 /// elongated along their own blur, but not in a common direction, are discs, whatever their size. [judged on 20 photos]
 const MIN_COMMON_DIRECTION: f64 = 0.93;
 
-/// Whether blur may have elongated a lamp: the lamp is elongated in the unwarped photo, a photo pixel is too, and their
-/// long axes differ by at most the angle with the cosine `min_cos`.
+/// Whether blur may have elongated a lamp: both the lamp and a photo pixel are elongated in the unwarped photo
+/// ([`MIN_SMEAR`]), and the cosine of the angle between their long axes exceeds `min_cos`.
 fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
     let [[short, x], [long, y]] = principal(lamp.moments);
     let [[minor, u], [major, v]] = principal(lamp.inverse_map * lamp.inverse_map.transpose());
@@ -33,19 +33,19 @@ fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
 /// perpendicular from the camera to the plane. It also stretches photo pixels away from this point. So the long axis of
 /// a protruding lamp is parallel to that of a photo pixel there. The lower the lamp hangs, the longer it looks.
 ///
-/// - A kind protrudes if, at each of its lamps, the lamp and a photo pixel are elongated ([`MIN_SMEAR`]), and the angle
-///   between their long axes is at most [`MAX_ALIGNED_ANGLE`].
+/// - A kind protrudes if blur may have elongated each of its lamps ([`is_smeared`]), with an angle of at most
+///   [`MAX_ALIGNED_ANGLE`] between the two long axes.
 /// - If all these lamps are parallel, none counts as protruding. This excludes a single lamp, and lamps in one line
 ///   with the camera, such as a continuous row of tubes.
-/// - A further kind protrudes if each of its lamps is elongated like this, but with an angle whose cosine is at least
-///   [`MIN_COS_ALONG`], and is about as wide as one of those lamps.
+/// - A further kind protrudes if each of its lamps is about as wide as one of those lamps, and if the angles are
+///   larger, but have cosines above [`MIN_COS_ALONG`].
 pub fn take_protruding(kinds: &mut Vec<Vec<Member>>) -> Vec<Vec<Member>> {
     let points_away = |kind: &Vec<Member>, min_cos: f64| kind.iter().all(|lamp| is_smeared(lamp, min_cos));
     let certain: Vec<&Member> =
         kinds.iter().filter(|kind| points_away(kind, MAX_ALIGNED_ANGLE.cos())).flatten().collect();
     let turns: DVec2 = certain.iter().map(|lamp| double_angle(lamp)).sum();
-    // If the angles of the lamps deviate from their mean with the standard deviation σ = `MAX_ALIGNED_ANGLE`, the mean
-    // of the unit vectors at twice the angles has the length exp(-(2σ)² / 2). Lamps with a longer mean vector are
+    // Let the angles of the lamps deviate from their mean with the standard deviation σ = `MAX_ALIGNED_ANGLE`. Then the
+    // mean of the unit vectors at twice the angles has the length exp(-(2σ)² / 2). Lamps with a longer mean vector are
     // parallel.
     let parallel = (-2.0 * MAX_ALIGNED_ANGLE.powi(2)).exp();
     if certain.is_empty() || turns.length() > parallel * certain.len() as f64 {
