@@ -37,8 +37,8 @@ pub(super) fn check_pixels(
 /// Bytes that the crate `image` needs to decode the pixels of a file, in addition to the picture itself.
 pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> usize {
     match format {
-        // Progressive files need the coefficients of four components, two bytes each, for the whole picture. It is
-        // padded to blocks of up to 32 × 32 pixels. All files need a row of such blocks.
+        // Progressive files need the coefficients of four components, two bytes each, for the whole picture. The
+        // picture is padded to blocks of up to 32 × 32 pixels. All files need a row of such blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
         // Per pixel: one byte for the index of its colour, and four bytes for a separate copy of the frame, which is

@@ -65,8 +65,8 @@ impl Quantiser {
     }
 
     pub fn quantise(self, value: f32) -> i16 {
-        // Add one half to round to the nearest integer. This is possible because the value is non-negative, and avoids
-        // a call of the C library.
+        // Add one half and truncate: this rounds to the nearest integer, because the value is not negative.
+        // `f32::round` would call the C library.
         (value.clamp(0.0, 1.0) * self.scale + 0.5) as i16
     }
 }

@@ -182,8 +182,8 @@ impl Tile {
         }
     }
 
-    /// Runs an iteration over the active patches of this tile, forwards and then backwards. Returns whether any patch
-    /// needed a search.
+    /// Runs an iteration over the active patches of this tile, forwards and then backwards. Without usage penalties,
+    /// patches whose distance is 0 are skipped. Returns whether any patch needed a search.
     fn search(
         &mut self,
         search: &Search,

@@ -107,8 +107,8 @@ impl Inks {
     }
 
     /// Interpolates in magenta, yellow and black at one grid point of cyan. Starts with the colour at the low corner of
-    /// `cell`. Then steps along one axis after another, in descending order of their fractions `part`, and adds the
-    /// difference of colour along each step times the fraction.
+    /// `cell`. Then steps to the next grid point along one axis after another, in descending order of their fractions
+    /// `part`. Each step adds its difference of colour times the fraction of its axis.
     fn tetrahedron(&self, cell: [usize; INKS], part: [f32; INKS]) -> Vec3 {
         let mut axes = [1, 2, 3];
         axes.sort_unstable_by(|&a, &b| part[b].total_cmp(&part[a]));
