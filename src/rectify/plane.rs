@@ -11,7 +11,9 @@ use glam::{DMat3, DVec2, DVec3};
 const MAX_PIXELS: usize = 1 << 18;
 
 /// A plane is refused as seen edge-on if the median of `sin a` over the pixels of the mask is below this, where `a` is
-/// the angle between the plane and the viewing ray. [origin not recorded]
+/// the angle between the plane and the viewing ray. Any value from 0.004 to 0.05 serves. At 0.0035, the angle is as
+/// small as the least error that directions are assumed to have, 0.2°, and the plane could face either way. At 0.05, a
+/// ceiling 1 m above the camera is 20 m away. [convention]
 const MIN_INCIDENCE: f64 = 0.02;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.

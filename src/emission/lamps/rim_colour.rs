@@ -21,8 +21,10 @@ const MIN_BRIGHTNESS: f32 = 0.5;
 const RIM_WIDTH: usize = 2;
 /// A colour is read from a rim only if the rim has at least this number of pixels. [origin not recorded]
 const MIN_RIM: f64 = 8.0;
-/// Minimum ratio of a channel of a rim's colour to its strongest channel; a weaker channel is raised to this ratio.
-/// [origin not recorded]
+/// Minimum ratio of a channel of a rim's colour to its strongest channel; a weaker channel is raised to this ratio. In
+/// coloured light, it limits restored values to 16 times the level at which channels clip. White light has larger
+/// ratios: the blue of a lamp of 2700 K, in linear sRGB, has 0.10. Any value up to 0.09 leaves such lamps unchanged.
+/// [convention]
 const MIN_CHANNEL: f64 = 1.0 / 16.0;
 
 /// The colours of lamps as read from their rims. They replace the colours of clipped pixels.
