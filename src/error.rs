@@ -56,7 +56,7 @@ impl ErrorKind {
         Self::Unreachable,
     ];
 
-    /// Returns the kind with this value of `luxfer_status`.
+    /// Returns the kind with this value of `luxfer_status`; `None` for 0 (success) and for unknown values.
     pub fn from_value(value: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|&kind| kind as i32 == value)
     }

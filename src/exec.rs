@@ -142,7 +142,8 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
-/// Starts a thread. The thread suppresses panic messages if the thread that starts it does.
+/// Starts a thread. The thread suppresses panic messages if the thread that starts it does. Returns the error
+/// `OutOfMemory` if fewer than `THREAD_OVERHEAD` bytes are left.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
     if !reserve::has_room(THREAD_OVERHEAD) {
         return Err(io::ErrorKind::OutOfMemory.into());

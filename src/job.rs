@@ -17,7 +17,7 @@ pub struct Monitor {
     /// Progress as the bits of an `f64`. Non-negative floats sort like their bits as integers, so `fetch_max` keeps
     /// the progress from falling.
     progress: AtomicU64,
-    /// Called at every check for cancellation, for tests.
+    /// For tests: a function that is called at every check for cancellation.
     #[cfg(test)]
     pub at_check: Option<Box<dyn Fn() + Send + Sync>>,
 }

@@ -77,7 +77,8 @@ pub fn has_room(bytes: usize) -> bool {
     std::hint::black_box(list::<u8>(bytes)).is_some()
 }
 
-/// Allocates memory from the system, to be freed by the program's allocator; null on failure.
+/// Allocates memory that the program's allocator can free; null on failure. The memory comes from the system, never
+/// from the reserve. Without the feature `reserve`, it comes from the program's allocator.
 ///
 /// # Safety
 /// The layout must have a non-zero size.

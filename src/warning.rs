@@ -21,7 +21,8 @@ pub enum Code {
     NotSquare = 4,
     /// Features: the shape of the room, found from lines in the photo, is uncertain, and there is no depth map.
     LayoutUncertain = 5,
-    /// Mask: much of the mask resembles no stroke, or regions outside it partly resemble the lamps that were painted.
+    /// Mask: much of the mask resembles no stroke. For lamps: some regions outside the mask are almost like the painted
+    /// lamps.
     Unseen = 6,
     /// Mask: strokes of both classes cover the same pixels.
     ContradictoryStrokes = 7,
@@ -43,8 +44,8 @@ pub enum Code {
     PatternUncertain = 15,
     /// Emission: the photo shows too few whole lamps to determine a pattern.
     FewLamps = 16,
-    /// Emission: the lamps form no lattice, so the texture is continued patch by patch, and it differs much from the
-    /// photo.
+    /// Emission: the lamps form no lattice, so the texture is continued patch by patch; and the texture differs much
+    /// from the photo.
     NoLattice = 17,
     /// Relighting: a colour channel does not meet its target.
     Unreachable = 18,

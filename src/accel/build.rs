@@ -13,8 +13,8 @@ use crate::job::Job;
 use crate::simd::Level;
 use glam::{Vec3, Vec4};
 
-/// For each round of reinsertion, the share of all nodes that the round tries to move: the nodes of largest area. More
-/// rounds or larger shares gain little. [bench rays]
+/// Share of all nodes that each round of reinsertion tries to move; a round takes the nodes whose boxes have the
+/// largest area. More rounds or larger shares gain little. [bench rays]
 const ROUNDS: [f32; 3] = [0.1, 0.1, 0.03];
 
 impl Accel {

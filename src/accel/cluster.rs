@@ -57,7 +57,7 @@ struct Cluster {
     pair: u32,
 }
 
-/// The part of the tree's pairs that a range of leaves may fill.
+/// The pairs of the tree that a range of leaves may fill.
 struct NewPairs<'a> {
     pairs: &'a mut [Pair],
     parents: &'a mut [u32],
@@ -87,8 +87,8 @@ impl NewPairs<'_> {
     }
 }
 
-/// A range of leaves along the space-filling curve, with its clusters. It owns as many unfilled pairs as it has
-/// leaves: one more than it needs to join them all.
+/// A range of leaves along the space-filling curve, with its clusters. It owns one unfilled pair per leaf. Joining all
+/// n leaves fills n - 1 of these pairs; the last cluster keeps the remaining one in reserve.
 struct Range<'a> {
     leaves: &'a [Bvh2Node],
     order: &'a [(u64, u32)],
@@ -174,8 +174,8 @@ const BOX_CAPACITY: usize = 2 * FEW_CLUSTERS + 2 * SEARCH_RADIUS;
 /// and after the last cluster lie sentinel boxes, which are too large to be chosen as partners.
 struct Boxes([[f32; BOX_CAPACITY]; 6]);
 
-/// Half the side of a sentinel box. It is larger than any coordinate: scaled scenes have an extent of about 1, and lie
-/// at most about 2^24 from the origin. [convention]
+/// Half the side of a sentinel box. It is larger than any coordinate: boxes are scaled ([`Leaves::scale`]) so that the
+/// scene has an extent of about 1, and they lie at most about 2^24 from the origin. [convention]
 const SENTINEL: f32 = 1e15;
 
 /// The entry `[i / LANES][k][i % LANES]` holds the low bits ([`PARTNER_BITS`]) of `i XOR j`. Here

@@ -126,7 +126,7 @@ struct Open {
     /// Index of the parent node in [`Wide::lines`], and the lane of that node which holds this child; `None` for the
     /// root.
     parent: Option<(usize, usize)>,
-    /// Number of entries on the traversal stack when a ray visits this node.
+    /// Maximum number of entries on the traversal stack when a ray visits this node.
     stack_depth: usize,
 }
 
@@ -136,7 +136,7 @@ struct DeferredChild {
     at: Place,
     node: usize,
     lane: usize,
-    /// Number of entries on the traversal stack when a ray visits this child.
+    /// Maximum number of entries on the traversal stack when a ray visits this child.
     stack_depth: usize,
 }
 
@@ -237,8 +237,8 @@ impl Choice<'_> {
             waiting -= 1;
             let ((part, at), mut roots) = open[waiting];
             let branch = self.branch((part, at));
-            // The branch may become up to `roots` wide subtrees. Choose fewer if they cost the same. The branch of the
-            // node itself (`roots` = 8) is always divided.
+            // The branch may become up to `roots` wide subtrees. Choose fewer wide subtrees if the cost is the same.
+            // The branch of the node itself (`roots` = 8) is always divided.
             while roots < 8 && roots > 1 && branch.cost[roots - 2] <= branch.cost[roots - 1] {
                 roots -= 1;
             }
@@ -267,8 +267,8 @@ impl Choice<'_> {
         len
     }
 
-    /// Returns the indices of the triangles below a branch and their number, and prefetches the triangles. The branch
-    /// may extend into other parts of the tree.
+    /// Returns the indices of the triangles below a branch with at most [`WIDTH`] triangles, and their number. Also
+    /// prefetches these triangles. The branch may extend into other parts of the tree.
     fn triangles(&self, at: Place) -> ([u32; WIDTH], usize) {
         let mut ids = [0; WIDTH];
         let mut len = 0;

@@ -1,9 +1,9 @@
 //! Expected traversal cost of each subtree of the binary tree when it is represented by one to seven wide subtrees. A
 //! wide subtree is a packet of triangles, or a node of eight children with all below it.
 //!
-//! By the surface area heuristic, the probability that a ray which hits a parent's box also hits a child's box is the
-//! ratio of the child's surface area to the parent's. The costs of a subtree follow from those of its two halves
-//! (Ylitie et al. 2017, section 3.1).
+//! By the surface area heuristic, a ray that hits a parent's box also hits a child's box with the probability a / A.
+//! Here a and A are the surface areas of the child's and of the parent's box. The costs of a subtree follow from those
+//! of its two halves (Ylitie et al. 2017, section 3.1).
 
 use super::packet::WIDTH;
 use super::pages;
@@ -53,7 +53,9 @@ pub(super) struct Branch {
     /// Half the total surface area of all leaf boxes below this branch. It approximates the area of the leaves'
     /// triangles, because most leaf boxes are flat.
     pub surface: f32,
-    /// `cost[i]` is the minimum expected cost of this branch when at most `i + 1` wide subtrees represent it.
+    /// `cost[i]` is the minimum expected cost of this branch when at most `i + 1` wide subtrees represent it. A node
+    /// costs half the area of its box; a packet costs [`PACKET_COST`] times half the area of its box. The common
+    /// divisor, half the area of the scene's box, is left out.
     pub cost: [f32; 7],
 }
 

@@ -48,7 +48,7 @@ pub(super) trait Lanes: Copy {
     unsafe fn pick(payload: &[u32; 8], mask: u32, to: *mut u64);
 }
 
-/// Two registers of four: SSE2 on x86-64, NEON on aarch64, scalar code elsewhere.
+/// Two registers of four lanes: SSE2 on x86-64, NEON on aarch64, scalar code elsewhere.
 #[derive(Clone, Copy)]
 pub(super) struct Baseline([Vec4; 2]);
 

@@ -1,6 +1,6 @@
 //! Storage for the nodes and packets of the acceleration structure in one list of cache lines.
 //!
-//! Deep in the tree, nodes are no longer in the processor's caches, so each step of a ray waits for memory. It waits
+//! The processor's caches hold only the top of the tree. Deeper in the tree, each step of a ray waits for memory, and
 //! longer if the step leads to another page of memory. Each node is therefore followed by its packets, and nodes that
 //! are likely to be visited together share a page.
 

@@ -62,7 +62,7 @@ impl Child {
 #[derive(Clone)]
 #[repr(C, align(64))]
 pub(super) struct Node {
-    /// Bits of eight [`Child`] references, as integers so that all can be moved at once.
+    /// Bits of eight [`Child`] references. As integers, they are copied to the traversal stack together.
     pub children: [u32; 8],
     /// `bounds[2 * axis]` holds the lower bounds, `bounds[2 * axis + 1]` the upper bounds.
     pub bounds: [Row; 6],

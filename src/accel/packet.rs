@@ -48,8 +48,8 @@ impl Packet {
         self.ids.iter_mut().filter(|id| **id != u32::MAX).for_each(|id| *id = ids[*id as usize]);
     }
 
-    /// Returns a mask of the triangles hit, and the hits of all lanes. A hit counts if its distance is at most `t_max`
-    /// and exceeds its own rounding error.
+    /// Returns a mask of the triangles hit, and a hit for each lane; only those in the mask are meaningful. A hit
+    /// counts if its distance is at most `t_max` and exceeds its own rounding error.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &TriangleRay, t_max: f32) -> (u32, PacketHits<L>) {
         let [x, y, z] = self.sheared::<L>(ray);

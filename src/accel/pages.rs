@@ -12,8 +12,8 @@ use rayon::prelude::*;
 use std::mem::MaybeUninit;
 use std::ops::{Deref, DerefMut};
 
-/// A huge page is worthwhile for at least this many bytes: it is then obtained as fast as the small pages that it
-/// replaces.
+/// A huge page is requested only if the list fills at least this many bytes of it. The system then provides the huge
+/// page as fast as the small pages that it replaces.
 const MIN_HUGE: usize = HUGE / 4;
 
 /// A finished list. It starts at the boundary of a huge page if it is long enough for one.
@@ -72,7 +72,8 @@ impl<T> DerefMut for Pages<T> {
 fn storage_on_huge_pages<T>(len: usize) -> Result<(Vec<MaybeUninit<T>>, usize)> {
     const { assert!(HUGE.is_multiple_of(size_of::<T>())) };
     let bytes = len * size_of::<T>();
-    // Use a huge page for the end of the list if it covers at least `MIN_HUGE` bytes.
+    // The list may fill its last huge page only in part. Use a huge page for this rest as well if the rest has at least
+    // `MIN_HUGE` bytes.
     let huge = if bytes % HUGE >= MIN_HUGE { bytes.next_multiple_of(HUGE) } else { bytes / HUGE * HUGE };
     let around = if huge == 0 { 0 } else { 2 * HUGE / size_of::<T>() };
     let mut storage = Vec::<MaybeUninit<T>>::new();

@@ -63,7 +63,7 @@ impl<'a> Reinsertion<'a> {
     }
 
     /// Returns one threshold for each of `shares`. At most this share of all nodes have a box whose half surface area
-    /// reaches the threshold. It can be fewer, because thresholds are boundaries of histogram bins.
+    /// reaches the threshold. The actual share can be smaller, because thresholds are boundaries of histogram bins.
     pub fn area_thresholds<const N: usize>(&self, shares: [f32; N]) -> [f32; N] {
         let count = |pairs: &[Pair]| {
             let mut counts = vec![0; 1 << AREA_BIN_BITS];
@@ -120,8 +120,9 @@ impl<'a> Reinsertion<'a> {
         self.tree[node].aabb()
     }
 
-    /// Finds the best new position of a subtree. Removing the subtree deletes its parent and shrinks the boxes above;
-    /// inserting it makes the boxes above the new position grow.
+    /// Finds the best new position of a subtree. The gain is 0 if no move makes the total area smaller. Removing the
+    /// subtree deletes its parent and shrinks the boxes above; inserting it makes the boxes above the new position
+    /// grow.
     fn best_move(&self, from: u32, candidates: &mut Vec<Candidate>) -> Move {
         let this = self.aabb(from);
         let best = Move { from, to: 0, gain: 0.0 };
@@ -143,7 +144,8 @@ impl<'a> Reinsertion<'a> {
                 gained += less;
                 rest = (less > 0.0).then_some(smaller);
             }
-            // Stop if no position farther up can be better: the new parent costs at least the area of the subtree.
+            // The next search examines the positions beside `sibling(pivot)` and below it. Stop if none of them can be
+            // better: the new parent costs at least the area of the subtree.
             if pivot == Tree::ROOT || gained - search.area <= search.best.gain {
                 return search.best;
             }
@@ -192,9 +194,9 @@ impl<'a> Reinsertion<'a> {
     }
 }
 
-/// A pair of siblings beside which the subtree may be placed. The second number is the index of the first sibling. The
-/// first number is the decrease of the total half area if the subtree moves beside either sibling, with the box of the
-/// new parent left out.
+/// A pair of siblings beside which the subtree may be placed. The first number is the decrease of the total half area
+/// if the subtree moves beside either sibling, with the box of the new parent left out. The second number is the index
+/// of the first sibling.
 type Candidate = (f32, u32);
 
 /// The search for the best position of one subtree.

@@ -6,9 +6,9 @@ use super::lanes::{Lanes, Row, take_lowest};
 use super::node::Child;
 use std::mem::MaybeUninit;
 
-/// A child on the stack. The low 32 bits hold the reference to the child. The high 32 bits hold the distance at which
-/// the ray enters its box, as the bits of a float, or 0 in any-hit queries, which do not use the distance. Non-negative
-/// floats sort as their bits do, so these integers sort by distance.
+/// A child on the stack. The low 32 bits hold the reference to the child. The high 32 bits hold the bits of a float:
+/// the distance at which the ray enters the child's box. They are 0 in any-hit queries, which do not use the distance.
+/// Non-negative floats sort as their bits do, so these integers sort by distance.
 pub(super) type Waiting = u64;
 
 /// Number of entries above the top that [`Stack::push_all`] may overwrite.

@@ -235,7 +235,7 @@ fn a_part_gives_the_hits_of_the_whole_within_its_box() {
         let segment = Ray { origin: from, direction: to - from, t_max: 1.0 };
         assert_eq!(part.closest(&segment, |_| true), whole.closest(&segment, |_| true));
         assert_eq!(part.occluded(&segment, |_| true), whole.occluded(&segment, |_| true));
-        // For a ray without end, a hit of the part inside the box (t < 1) is also the nearest hit of the whole
+        // The ray has no end. If `part` gives a hit inside the box (t < 1), it is also the nearest hit of the whole
         // structure.
         let ray = Ray::new(from, to - from);
         match part.closest(&ray, |_| true).filter(|hit| hit.t < 1.0) {

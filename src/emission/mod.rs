@@ -144,9 +144,9 @@ pub fn blend_measured(
     make(composition, input, styles, params, job)
 }
 
-/// Makes each lamp of the unwarped light mask one piece: removes the bars between the panes of a luminous ceiling, so
-/// that each pane becomes a lamp, and joins the parts of lamps that the mask separates. Returns the mask unchanged if
-/// there is nothing to part or to join.
+/// Makes each lamp of the unwarped light mask one piece. If the mask shows a luminous ceiling, removes the bars between
+/// its panes, so that each pane becomes a lamp. Otherwise, joins the parts of lamps that the mask separates. Returns
+/// the mask unchanged if there is nothing to remove or to join.
 pub fn complete_lights(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography, job: Job) -> Result<Image> {
     let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
     let parted = panes::part(&plane, job)?;

@@ -61,9 +61,9 @@ pub struct Params {
     /// Weight, in `[0, 1e3]`, of the metadata channels (confidence, x and y distance to the nearest light) relative to
     /// colour; 0 is plain quilting.
     pub guide_weight: f32,
-    /// Position of the pattern's origin relative to the texture's top left corner, in texels, each coordinate in
-    /// `[-1e6, 1e6]`. Without a lattice there is no origin: the offset then shifts the lamps of a tileable texture,
-    /// and must be 0 in other textures.
+    /// Displacement of the pattern in the texture, to the right and down, in texels. Each coordinate is in
+    /// `[-1e6, 1e6]`. If patches are placed without a lattice, the offset must be 0. The exception is a tileable
+    /// texture of whole lamps: there, the offset shifts the lamps.
     pub offset: DVec2,
     /// Minimum autocorrelation, in `[0, 1]`, of a shift that counts as a period of the lights. At 0, even a poor
     /// repetition gives a lattice; at 1, patches are placed without a lattice whatever the repetition.

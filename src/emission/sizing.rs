@@ -38,7 +38,7 @@ const MIN_SHOWN_TEXELS: f64 = 4.0;
 pub struct Sizing {
     /// Metres per unwarped pixel.
     pub pixel: f64,
-    /// The distance of the photo's camera from the lit plane, from which this size follows.
+    /// The distance of the photo's camera from the lit plane. `pixel` is in proportion to it.
     pub distance: CameraDistance,
     /// The measured sizes of the exemplar's lamps; `None` if the size of the pattern does not depend on them.
     pub measured: Option<Measurements>,
@@ -50,7 +50,7 @@ pub struct TexelGrid {
     pub height: usize,
     /// Unwarped pixels per texel.
     pub scale: f64,
-    /// Along u and v.
+    /// Number of texels per metre along u and along v.
     pub texels_per_metre: DVec2,
 }
 

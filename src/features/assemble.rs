@@ -21,8 +21,8 @@ struct Geometry<'a> {
     normals: &'a [f32],
     frustum: &'a Frustum,
     to_room: Mat3,
-    /// Normalised device coordinates of the first pixel (`start`), and the step of x between neighbouring pixels
-    /// (`step`).
+    /// Normalised device coordinates of the first pixel of the tile (`start`), and the step of x between neighbouring
+    /// pixels (`step`).
     start: Vec2,
     step: f32,
 }

@@ -111,8 +111,8 @@ impl Layout {
     }
 
     /// Moves the other faces of the room away until all given pixels lie on `face`, which keeps its place. Returns
-    /// `None` if a face would have to move by a factor that is too large to be plausible. If the layout is uncertain,
-    /// larger factors are plausible.
+    /// `None` if a face would have to move by more than the factor `MAX_GROWTH`, or `MAX_GROWTH_UNCERTAIN` if the
+    /// layout is uncertain.
     pub fn plausibly_enlarged(
         &self,
         face: Face,

@@ -30,6 +30,8 @@ const QUANTILE_SAMPLES: usize = 1 << 16;
 
 /// Builds the surface from the caller's depth map. Scales the depth so that its 2 % quantile lies on the near plane,
 /// and fills holes from their surroundings.
+///
+/// Errors: more than one channel (`InvalidArgument`); no positive finite depth (`Degenerate`).
 pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let depth = map.image;
     let (width, height) = (depth.width, depth.height);
@@ -105,9 +107,9 @@ fn sample_known(depth: &Image, inverse_at: impl Fn(usize, usize, f32) -> f32 + S
     Ok(sampled.concat())
 }
 
-/// Builds the prior for an interior of which nothing is known: farthest at mid-height, nearer towards the ceiling
-/// above and the floor below. `1/z` rises quadratically with the distance from mid-height. At the top and the bottom
-/// border of the photo it is twice the value at mid-height.
+/// Builds the prior for an interior of which nothing is known: farthest at mid-height, nearer towards the ceiling above
+/// and the floor below. At mid-height, `1/z` is `1 / √(near far)`. It rises quadratically with the distance from
+/// mid-height, to twice this value at the top and the bottom border of the photo.
 pub fn neutral(width: usize, height: usize, frustum: &Frustum, radius: usize, job: Job) -> Result<Surface> {
     let middle = 1.0 / (frustum.near * frustum.far).sqrt();
     let mut inverse_depth = Image::new(width, height, 1)?;

@@ -1,9 +1,9 @@
 //! Eq. 1 of the paper: from a pixel and its screen depth to a point in space, `p_w = P⁻¹ p_s`.
 //!
-//! `P(t, b, l, r, f, n)` is the standard projection matrix. Its screen depth is affine in *inverse* depth: with `d_s =
-//! 0` on the near plane and 1 on the far plane (normalised device depth `2 d_s - 1`), `1/z = 1/n + d_s (1/f - 1/n)`.
-//! Hence the inverse depth from a network such as MiDaS, normalised to `[0, 1]`, equals `1 - d_s`, and points beyond
-//! the far plane stay finite: `d_s` tends to `f / (f - n)` as z grows.
+//! `P(t, b, l, r, f, n)` is the standard projection matrix. Its screen depth is affine in *inverse* depth: with
+//! `d_s = 0` on the near plane and 1 on the far plane (normalised device depth `2 d_s - 1`),
+//! `1/z = 1/n + d_s (1/f - 1/n)`. Hence the inverse depth from a network such as MiDaS, normalised to `[0, 1]`, equals
+//! `1 - d_s`, and points beyond the far plane stay finite: `d_s` tends to `f / (f - n)` as z grows.
 
 use crate::error::{Error, Result};
 use crate::geometry::Perspective;

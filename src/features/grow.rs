@@ -82,8 +82,8 @@ pub fn grow(photo: &Image, strokes: &[PlaneStroke], job: Job) -> Result<Option<S
     Ok(Some(Surfaces { width: size[0], height: size[1], on_plane }))
 }
 
-/// Adds the smooth pixels of the reduced image that a stroke covers to the seeds. Parts of the stroke with less than
-/// the share [`MIN_PART`] of these pixels are left out.
+/// Appends to `seeds` the smooth pixels of the reduced image that a stroke covers. Leaves out the pixels in parts of
+/// the stroke that hold less than the share [`MIN_PART`] of these smooth pixels.
 fn add_seeds(
     stroke: &PlaneStroke,
     photo: &Image,

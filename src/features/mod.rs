@@ -77,7 +77,10 @@ pub struct Features {
     pub non_finite: usize,
 }
 
-/// Computes the features of a photo. Fails if a depth map has no positive finite value.
+/// Computes the features of a photo.
+///
+/// Errors: a setting out of range, a depth map of another size, photo values too large for finite features
+/// (`InvalidArgument`); a depth map without a positive finite value (`Degenerate`).
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
     params.check()?;
     let (width, height) = (input.photo.width, input.photo.height);
@@ -112,7 +115,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
             Ok((depth::neutral(width, height, &frustum, radius, geometry_job)?, DepthSource::Neutral, None))
         }
     };
-    // Meanwhile, allocate the output: allocation takes a tenth of the total time.
+    // Allocate the output while the depth is computed, because allocation takes a tenth of the total time.
     let (geometry, image) = exec::both(geometry, || Image::new(width, height, CHANNELS));
     let (surface, depth_source, layout) = geometry?;
     let mut image = image?;

@@ -59,7 +59,8 @@ impl DepthNetwork {
         Ok(network)
     }
 
-    /// Returns the rows and columns of the network's input for a photo.
+    /// Returns the rows and columns of the network's input for a photo. Returns an error unless the input is a single
+    /// RGB image with sides of at most `MAX_INPUT_SIDE`.
     fn input_size(&self, width: usize, height: usize) -> Result<[usize; 2]> {
         let shape = self.network.input_shape();
         let is = |size: Option<usize>, wanted: usize| size.is_none_or(|n| n == wanted);

@@ -152,7 +152,7 @@ impl Running {
 
 widest! {
     /// Least-squares regression of `w` on `(1, i, j)`, from sums relative to the means, for the windows of a row. A
-    /// window whose points are collinear gets no plane.
+    /// window with fewer than three points, or with collinear points, gets no plane: its residual is infinite.
     fn regress(running: &Running, out: &mut [f32]) {
         let width = out.len() / 4;
         let [n, i, ii, j, jj, ij, w, iw, jw, ww] = running.sums.each_ref().map(|sums| {

@@ -55,9 +55,10 @@ struct Points {
     weight: Vec<f64>,
 }
 
-/// A quarter of the view, such as the upper left. Its rays can hit only three faces of the box: one side wall, either
-/// the ceiling or the floor, and the back wall. The distance of the back wall is always 1, so the score of a quadrant
-/// depends only on the distances of the two other faces.
+/// The part of the view in which the rays' x and y have given signs in room axes, such as x < 0 (left) and y < 0 (up).
+/// Its rays can hit only three faces of the box: one side wall, either the ceiling or the floor, and the back wall. The
+/// distance of the back wall is always 1, so the score of a quadrant depends only on the distances of the two other
+/// faces.
 #[derive(Default)]
 pub struct Quadrant {
     /// For each room axis, the sample points of the segments that run along it.
@@ -70,7 +71,7 @@ pub struct Quadrant {
 /// The evidence of a view about its box: the segments with their axes, and the strokes.
 pub struct Evidence {
     segments: Vec<RoomSegment>,
-    /// The upper left, upper right, lower left and lower right quarter of the view.
+    /// The quadrants of the view: left and up, right and up, left and down, right and down.
     pub quadrants: [Quadrant; 4],
     /// Whether the user marked a plane, that is, whether any stroke is positive.
     pub has_plane: bool,
@@ -141,8 +142,9 @@ impl Evidence {
         self.quadrants.iter().enumerate().map(agreement).sum()
     }
 
-    /// Returns up to `count` candidate distances of one side (left, right, ceiling or floor), sorted by decreasing
-    /// support. If the side is at a candidate distance, its edge with the back wall coincides with a segment.
+    /// Returns up to `count` candidate distances of one side (left, right, ceiling or floor). If the side is at a
+    /// candidate distance, its edge with the back wall coincides with a segment. Candidates with which more segments
+    /// agree come first; segments count by their weights.
     pub fn candidates(&self, side: usize, count: usize) -> Vec<f64> {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.
@@ -211,7 +213,7 @@ impl Points {
         self.weight.push(weight);
     }
 
-    /// Pads the list to a multiple of the lanes, with points of zero weight.
+    /// Adds points of zero weight until the number of points is a multiple of `LANES`.
     fn fill_up(&mut self) {
         while !self.weight.len().is_multiple_of(LANES) {
             self.push([0.0, 1.0, 1.0], 0.0);

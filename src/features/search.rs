@@ -54,7 +54,7 @@ const LANES: usize = 8;
 type ScoredBox = ([f64; 4], f64);
 
 /// Finds the box that agrees best with the segments and strokes of a view, and with the surfaces over which the strokes
-/// have grown.
+/// have grown. Returns an error if the room axes are not orthogonal unit vectors.
 pub fn find(room: &RoomView, surfaces: Option<&Surfaces>, size: [usize; 2], job: Job) -> Result<Layout> {
     let axes = facing_axes(room.perspective);
     let orthogonality = (axes.transpose() * axes - DMat3::IDENTITY).to_cols_array();
@@ -92,7 +92,7 @@ pub fn find(room: &RoomView, surfaces: Option<&Surfaces>, size: [usize; 2], job:
     tops.sort_by(|a, b| b.1.total_cmp(&a.1));
     let best = tops[0];
 
-    // Compute the confidence from the lead over the best box that clearly differs.
+    // Compute the confidence from the number of segments, and from the lead over the best box that clearly differs.
     let runner_up = |all: &[ScoredBox]| {
         let other = all.iter().find(|other| differ(&view, &other.0, &best.0));
         other.map_or(f64::NEG_INFINITY, |other| other.1)

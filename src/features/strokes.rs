@@ -9,8 +9,9 @@ use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Number of cells along each side of the photo. It is odd, so that no pixel centre lies on the boundary of two cells;
-/// a mirrored photo therefore has mirrored cells.
+/// Number of cells along each side of the photo. It is odd, so that no pixel centre lies on the boundary of two cells:
+/// along a side of n pixels, the centre x + 1/2 lies (2 x + 1) `CELLS` / (2 n) cells from the border, and the odd
+/// numerator is no multiple of 2 n. A mirrored photo therefore has mirrored cells.
 const CELLS: usize = 15;
 
 /// One sample of the strokes within a grid cell: of the strokes on the plane, or of the other strokes.

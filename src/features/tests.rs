@@ -261,7 +261,7 @@ fn saturated_and_grey_photos_have_their_lab() {
     for (channels, value, lab) in [(3, 1.0, [100.0, 0.0, 0.0]), (1, 0.18, [49.496_108, 0.0, 0.0]), (4, 0.0, [0.0; 3])] {
         let mut photo = Image::new(70, 3, channels).unwrap();
         photo.data.fill(value);
-        // Channels beyond the colours are ignored.
+        // A fourth channel, such as alpha, is ignored.
         if channels == 4 {
             photo.data.chunks_exact_mut(4).for_each(|p| p[3] = f32::NAN);
         }
@@ -286,7 +286,7 @@ fn any_photo_has_finite_features() {
         let features = run_with(&photo, Some(DepthMap { image: &depth, kind: DepthKind::AlongRay }), None).unwrap();
         assert_eq!(features.image.count_non_finite(), 0);
     }
-    // The features of a binary image are exact.
+    // The CIELAB values of an image of zeros and ones are exact.
     let bit = |x: usize, y: usize| f32::from(Rng::new(6, &[x as u64, y as u64]).next_f32() < 0.5);
     let features = run_with(&Image::from_fn(31, 23, |x, y| [bit(x, y)]).unwrap(), None, None).unwrap();
     for (i, p) in features.image.data.chunks_exact(CHANNELS).enumerate() {

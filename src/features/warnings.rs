@@ -7,7 +7,8 @@ use crate::warning::{Code, Warning, percent};
 const MIN_LAYOUT_TRUST: f64 = 0.2;
 
 impl Features {
-    /// Returns warnings about the depth. A depth map, or the depth of a caller's network, gives no warning.
+    /// Returns warnings about the depth. A depth map, or the depth of a caller's network, gives no warning. The neutral
+    /// prior always gives one.
     pub fn warnings(&self) -> Vec<Warning> {
         let advice =
             "give a depth map or a network that estimates one, or paint a stroke on each wall and on the floor";

@@ -49,8 +49,8 @@ impl Homography {
         Ok(Self(nt.inverse() * normalised * nf).rescaled())
     }
 
-    /// Scales the matrix to unit Frobenius norm, so that its entries can be compared and the matrix can be inverted
-    /// safely.
+    /// Scales the matrix to unit Frobenius norm, so that the entries of two matrices can be compared, and so that the
+    /// determinant neither overflows nor underflows in an inversion. A zero matrix stays.
     pub fn rescaled(self) -> Self {
         let norm = self.0.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
         Self(if norm > 0.0 { self.0 * (1.0 / norm) } else { self.0 })

@@ -48,7 +48,7 @@ pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Resu
                 let step = (a + b - 2.0 * d).abs() / (FULL_STEP * d);
                 *edge = if step.is_finite() { edge.max(step) } else { *edge };
             }
-            // Suppress faint edges, which are noise on curved surfaces.
+            // Suppress strengths below 0.2, which are noise on curved surfaces, and rescale the others to [0, 1].
             *edge = ((*edge - 0.2) / 0.8).clamp(0.0, 1.0);
         }
     })?;

@@ -210,7 +210,7 @@ pub fn pairs(source: &Guides, target: &Guides, extras: Extras) -> Result<Vec<Pai
 const BRIGHT: f32 = 0.8;
 
 /// Returns the factor that converts luminance in cd/m² to values at the common exposure; 1 if the 90th percentile of
-/// luminance is 0.
+/// luminance is 0, or if no luminance is finite.
 pub fn exposure(source: &Image, target: &Image) -> Result<f32> {
     let pixels = source.data.chunks_exact(3).chain(target.data.chunks_exact(3));
     let mut luminances = try_collect(pixels.map(|p| luminance(Vec3::from_slice(p))).filter(|l| l.is_finite()))?;

@@ -13,8 +13,8 @@ use crate::job::Job;
 use crate::scene::Camera;
 use glam::Vec3;
 
-/// A point counts as occluded in the previous frame if its depth there exceeds the depth of the surface that the
-/// previous frame shows at its position by more than this share. [origin not recorded]
+/// A point at depth d in the previous frame counts as occluded there if d > (1 + DEPTH_TOLERANCE) s. Here s is the
+/// depth of the surface that the previous frame shows at the point's position. [origin not recorded]
 const DEPTH_TOLERANCE: f32 = 0.02;
 
 /// The motion between two frames.
@@ -58,9 +58,9 @@ pub fn motion(now: &Surfaces, before: &Surfaces, job: Job) -> Result<Motion> {
     Ok(Motion { image, unmatched: frames.unmatched()? })
 }
 
-/// The motion of a pixel is wrong if it differs by more than this number of pixels from the true motion of the pixel
-/// and from the true motion of each of its neighbours. The neighbours count, because at silhouettes a renderer may give
-/// a pixel the motion of either surface. [convention]
+/// The given motion of a pixel is wrong if it differs by more than this number of pixels from the true motion of the
+/// pixel and of each of its eight neighbours. The neighbours count because a renderer may give a pixel at a silhouette
+/// the motion of the object or that of the background. [convention]
 const MAX_ERROR: f32 = 1.0;
 
 /// Compares a given motion with the true motion of the surfaces, where both are known.
@@ -148,9 +148,9 @@ impl Surfaces {
         self.points[y as usize * self.width + x as usize].as_ref()
     }
 
-    /// Returns the larger of two depths of the surface that the pixel at a position shows: the depth at the pixel's
-    /// centre, and the depth of the triangle's plane at the position itself. On a surface seen at a grazing angle, the
-    /// two differ. Returns infinity if the pixel shows no surface.
+    /// The pixel at this position shows a triangle. Returns the larger of two depths: that of the pixel's centre, and
+    /// that of the triangle's plane at the position itself, if the plane lies in front of the camera there. The two
+    /// differ on a surface seen at a grazing angle. Infinity if the pixel shows no surface.
     fn depth_near(&self, [x, y]: [f32; 2]) -> f32 {
         let triangle =
             self.at([x, y]).and_then(|point| Some((point, self.shapes[point.mesh as usize].triangle(point)?)));
@@ -165,7 +165,7 @@ impl Surfaces {
     }
 }
 
-/// Whether the camera sees the front of a triangle, from which its corners wind counter-clockwise.
+/// Whether the camera sees the front of a triangle: the side on which its corners wind counter-clockwise.
 fn front([a, b, c]: [Vec3; 3], camera: &Camera) -> bool {
     (b - a).cross(c - a).dot(camera.position - a) > 0.0
 }

@@ -11,8 +11,8 @@ use glam::Vec3;
 const PASSES: u32 = 3;
 /// The cubic B-spline that each pass applies along x and y. [convention]
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
-/// Difference in brightness at which the weight of a neighbour falls to 1/e, relative to the mean brightness of both
-/// pixels. [origin not recorded]
+/// Relative difference |a - b| / m at which the weight of a neighbour falls to 1/e. a and b are the brightnesses of the
+/// pixel and of the neighbour; m is their mean, plus 2 % of the mean luminance of the image. [origin not recorded]
 const TOLERANCE: f32 = 0.25;
 
 /// Averages the light over neighbours of the same material, similar normal and similar brightness. Brightness is
@@ -40,8 +40,9 @@ struct Surface<'a> {
 
 impl Surface<'_> {
     /// Computes weighted means of `light` over 5 × 5 pixels that lie `step` pixels apart. The weight of a neighbour is
-    /// multiplied by `range_weight(a, b)`, where `a` and `b` are the luminances of the centre pixel and of the
-    /// neighbour in the image `guide`.
+    /// the product of three factors: the B-spline, a power of the cosine between the two normals (1 if the centre pixel
+    /// has none), and `range_weight(a, b)`. `a` and `b` are the luminances of the centre pixel and of the neighbour in
+    /// the image `guide`. Neighbours of another material have no weight.
     fn average(
         &self,
         light: &Image,

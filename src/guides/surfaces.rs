@@ -31,7 +31,7 @@ pub struct Point {
     pub mesh: u32,
     /// Indices of the triangle's corners among the vertices of the mesh.
     pub corners: [u32; 3],
-    /// Barycentric coordinates of corners 1 and 2.
+    /// Barycentric coordinates of the point with respect to `corners[1]` and `corners[2]`.
     pub barycentric: Vec2,
 }
 

@@ -65,7 +65,7 @@ fn pairs_share_their_exposure() {
         ["full", "direct", "specular", "indirect", "two bounces", "caustics", "normals", "edges", "materials"]
     );
     assert_eq!(pairs(&a, &b, Extras::default()).unwrap().len(), 5);
-    // If the target scene is twice as bright as the exemplar's scene, it stays twice as bright at the common exposure.
+    // Exemplar and target get the same exposure, so a target twice as bright as the exemplar stays twice as bright.
     b.light[0].data.iter_mut().for_each(|v| *v *= 2.0);
     let full = &pairs(&a, &b, Extras::default()).unwrap()[0];
     let dim = full.target.data.iter().position(|v| *v < 0.5 && *v > 0.05).unwrap();

@@ -123,7 +123,8 @@ impl Image {
         &mut self.data[start..start + self.channels]
     }
 
-    /// Returns the first three channels of a pixel. A grey image gives the same value three times.
+    /// Returns the first three channels of a pixel. An image of one or two channels gives its first channel three
+    /// times.
     pub fn rgb(&self, x: usize, y: usize) -> Vec3 {
         let pixel = self.pixel(x, y);
         if pixel.len() >= 3 { Vec3::from_slice(pixel) } else { Vec3::splat(pixel[0]) }
@@ -138,7 +139,7 @@ impl Image {
         Ok(out)
     }
 
-    /// Returns an image of the first three channels; grey becomes RGB.
+    /// Returns an image of the first three channels. With one or two channels, the first one is repeated three times.
     pub fn to_rgb(&self) -> Result<Self> {
         let mut out = Self::new(self.width, self.height, 3)?;
         for (o, p) in out.data.chunks_exact_mut(3).zip(self.data.chunks_exact(self.channels)) {
@@ -164,7 +165,8 @@ impl Image {
         self.data.iter().filter(|v| !v.is_finite()).count()
     }
 
-    /// Samples one channel bilinearly at a position in pixels, clamped at the border.
+    /// Interpolates one channel bilinearly at a position in pixels; pixel centres lie at half-integers. Beyond the
+    /// border, the border pixels are repeated.
     pub fn sample(&self, x: f64, y: f64, channel: usize) -> f32 {
         let (x, y) = (x - 0.5, y - 0.5);
         let clamp = |v: f64, n: usize| (v.clamp(0.0, (n - 1) as f64)) as usize;

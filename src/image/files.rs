@@ -150,7 +150,8 @@ fn create_neighbour(file: &Path, is_private: bool) -> io::Result<(PathBuf, File)
     Err(io::ErrorKind::AlreadyExists.into())
 }
 
-/// Writes the content of the new file to disk, with the mode and the owner of the file that it will replace.
+/// Writes the content of the new file to disk. `old` is the metadata of the file that it will replace, if any; the new
+/// file gets that mode and owner.
 fn fill(neighbour: &mut File, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     if let Some(old) = old {
         system::keep_owner(neighbour, old)?;

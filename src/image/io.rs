@@ -225,8 +225,8 @@ mod tests {
         let mut exr = encode_exr(&[Layer { name: "", image: &image, channels: &["Y"] }], &[]).unwrap();
         assert_eq!(decode(&exr, Encoding::Srgb).unwrap(), image);
         // Find the offset table, which has one entry. The only tile follows the table, and begins with its column, its
-        // row, and its resolution level along x and along y. Change the level along x from 0 to 10. In both levels,
-        // this picture would have one pixel.
+        // row, and its resolution level along x and along y. Change the level along x from 0 to 10. This picture of one
+        // pixel has one pixel at level 10, too, so only the level itself is wrong.
         let table = (0..exr.len() - 8).find(|&at| exr[at..at + 8] == (at as u64 + 8).to_le_bytes()).unwrap();
         assert_eq!(exr[table + 8..table + 24], [0; 16]);
         exr[table + 16] = 10;

@@ -20,7 +20,8 @@ pub enum Encoding {
     Linear,
 }
 
-/// Refuses pictures without pixels, and pictures whose width, height or area exceeds the limits of the library.
+/// Refuses pictures without pixels, pictures wider or higher than [`MAX_SIDE`], and pictures with more than
+/// [`MAX_PIXELS`] pixels.
 pub(super) fn check_size(width: u64, height: u64) -> Result<()> {
     let is_empty = width == 0 || height == 0;
     if is_empty || width > MAX_SIDE as u64 || height > MAX_SIDE as u64 || width * height > MAX_PIXELS {

@@ -37,8 +37,8 @@ pub(super) fn check_pixels(
 /// Bytes that the crate `image` needs to decode the pixels of a file, in addition to the picture itself.
 pub(super) fn pixels(file: &[u8], format: ImageFormat, width: usize, height: usize, pixel_bytes: usize) -> usize {
     match format {
-        // Progressive files need the coefficients of four components, two bytes each, in blocks of up to 32 pixels.
-        // All files need a row of blocks.
+        // Progressive files need the coefficients of four components, two bytes each, for the whole picture. The
+        // picture is padded to blocks of up to 32 × 32 pixels. All files need a row of such blocks.
         ImageFormat::Jpeg => (width + 32) * (8 * (height + 32) + 256),
         ImageFormat::WebP => webp(file, width, height),
         // Per pixel: one byte for the index of its colour, and four bytes for a separate copy of the frame, which is
@@ -60,15 +60,15 @@ pub(super) fn scanlines(columns: usize) -> usize {
 /// Bytes for decoding the pixels of a WebP file, in addition to the picture itself.
 fn webp(file: &[u8], width: usize, height: usize) -> usize {
     let has = |wanted: &[u8; 4]| riff_chunks(file).any(|(name, _)| name == wanted);
-    // Lossy files need Y, U and V in blocks of 16 pixels, and the partitions of the file, one of which may claim 2^24
-    // bytes.
+    // Lossy files need Y, U and V of the picture, padded to blocks of 16 × 16 pixels, and copies of the partitions of
+    // the file. One partition may claim 2^24 bytes.
     let lossy = 2 * (width + 16) * (height + 16) + 3 * file.len() + (17 << 20);
     if !has(b"VP8L") && !has(b"ALPH") && !has(b"ANMF") {
         return lossy;
     }
     // Lossless files, and files with alpha or animation, need more. Per pixel: RGBA (for animations two copies), the
-    // transforms, and for each block of 4 x 4 pixels the index of its code tables. Per byte of the file: code tables,
-    // of which the shortest take 12 bytes in the file and 4 KiB in memory.
+    // transforms, and for each block of 4 x 4 pixels the index of its code tables. Per byte of the file: up to 340
+    // bytes of code tables, since the shortest table takes 12 bytes in the file and 4 KiB in memory.
     11 * width * height + 400 * file.len() + lossy
 }
 

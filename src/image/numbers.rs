@@ -21,7 +21,7 @@ use std::path::Path;
 pub struct FileHeader {
     /// Width and height of the whole picture, in pixels.
     pub whole: [usize; 2],
-    /// Column and row in the whole picture of the window's first pixel.
+    /// Column and row of the window's top-left pixel in the whole picture.
     pub corner: [usize; 2],
     /// Width and height of the window, in pixels.
     pub size: [usize; 2],

@@ -172,8 +172,8 @@ impl Place {
     }
 }
 
-/// Returns the conversion from stated chromaticities to Rec.709. If `neutral` is stated, that chromaticity becomes
-/// white.
+/// Returns the colour space with the stated chromaticities, or those of Rec.709 if only `neutral` is stated. The
+/// chromaticity `neutral` becomes white; without it, the stated white does. `Unstated` if the file states neither.
 fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32>>) -> Space {
     let point = |v: ex::Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
     let chromaticities = match stated {
@@ -188,7 +188,7 @@ fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32
     chromaticities.to_rec709_from_white(white).map_or(Space::Unusable, Space::linear)
 }
 
-/// A layer of an OpenEXR file: a named group of channels. With an empty name, the channels are plain `R`, `G`, `B`.
+/// A layer of an OpenEXR file: a named group of channels. With an empty name, the channels have no prefix, such as `R`.
 pub struct Layer<'a> {
     pub name: &'a str,
     pub image: &'a Image,
@@ -197,8 +197,8 @@ pub struct Layer<'a> {
 }
 
 /// Encodes layers of equal size as a single-part OpenEXR file of 32-bit floats. Channels are named `layer.channel`. The
-/// file states the chromaticities of Rec.709 if one of its channels is called `R`. `attributes` are text attributes of
-/// the header, as (name, text).
+/// file states the chromaticities of Rec.709 if any layer has a channel `R`. `attributes` are text attributes of the
+/// header, as (name, text).
 pub fn encode(layers: &[Layer], attributes: &[(String, String)]) -> Result<Vec<u8>> {
     use ex::WritableImage;
     // Store texts as UTF-8, as OpenEXR prescribes.
@@ -288,8 +288,8 @@ mod tests {
     #[test]
     fn the_data_window_lies_in_the_display_window() {
         let display = ([10, 20], [4, 3]);
-        // Data windows, relative to the picture: equal to it, inside it, beyond its start, beyond its end, beyond
-        // both, and outside.
+        // Positions of the data window relative to the picture: equal to it; inside it; beyond its top-left corner;
+        // beyond its bottom-right corner; beyond all sides; outside it.
         assert_eq!(red(&file([10, 20], [4, 3], display)), (1..=12).collect::<Vec<i32>>());
         assert_eq!(red(&file([11, 21], [2, 1], display)), [0, 0, 0, 0, 0, 1, 2, 0, 0, 0, 0, 0]);
         assert_eq!(red(&file([9, 19], [3, 2], display)), [5, 6, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]);

@@ -5,8 +5,8 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Resizes an image. When it shrinks, each new pixel is the exact average of the area that it covers; when it grows,
-/// pixels are interpolated bilinearly.
+/// Resizes an image, separately along x and y. Along an axis that shrinks, each new pixel is the exact average over the
+/// length that it covers. Along an axis that grows, pixels are interpolated linearly.
 pub fn resize(image: &Image, width: usize, height: usize, job: Job) -> Result<Image> {
     let columns = weights(image.width, width);
     let rows = weights(image.height, height);
@@ -87,8 +87,8 @@ pub fn halvings(image: &Image, count: usize, job: Job) -> Result<Vec<Image>> {
     Ok(copies)
 }
 
-/// Gaussian blur with a standard deviation of `sigma` pixels, truncated at three standard deviations. The border
-/// pixels are repeated outwards.
+/// Gaussian blur with a standard deviation of `sigma` pixels, truncated at three standard deviations. The border pixels
+/// are repeated outwards. If `sigma` is 0 or less, the image is copied.
 pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
     if sigma <= 0.0 {
         return image.try_clone();

@@ -224,7 +224,7 @@ mod tests {
         let lines = format!("{format}EXPOSURE= 2\npfilt -e 4\n\tEXPOSURE=4.0\nCOLORCORR= 1 2 0.5\n");
         let (image, colour) = load(&lines, Encoding::Srgb);
         assert_eq!((&image[..3], colour), (&[0.125, 0.0625, 0.25][..], FileColour::Converted));
-        // As data, the values stay unchanged. Colours with invalid factors are not converted.
+        // Read as data, the values stay unchanged. Colours with invalid factors are not converted.
         assert_eq!(load(&lines, Encoding::Linear), (plain.clone(), FileColour::Data));
         for line in ["EXPOSURE=0\n", "EXPOSURE=-1\n", "EXPOSURE=bright\n", "COLORCORR=1 2\n", "PRIMARIES=0 0 0\n"] {
             assert_eq!(load(line, Encoding::Srgb), (plain.clone(), FileColour::Unconverted), "{line}");

@@ -107,8 +107,8 @@ pub fn decode(bytes: &[u8], format: ImageFormat, encoding: Encoding, orientation
 
     let stored = usize::from(colour.channel_count());
     let mut out = Upright::new(width, height, channels(stored), orientation)?;
-    // With the encoding sRGB, colours are decoded by a table (8 bits) or by the curve. Alpha, and all samples of other
-    // encodings, are only scaled to `[0, 1]`.
+    // If the encoding is sRGB, decode colours by a table (8 bits) or by the curve. Alpha and data are only scaled to
+    // the range `[0, 1]`.
     let is_curved = encoding == Encoding::Srgb;
     let curve = |v: f32, is_alpha: bool| if is_curved && !is_alpha { srgb_to_linear(v) } else { v };
     match usize::from(colour.bytes_per_pixel()) / stored {
@@ -224,7 +224,7 @@ mod tests {
                     assert!((v - f32::from(w) / 255.0).abs() < 1e-6, "{name}: {pixel:?} instead of {wanted:?}");
                 }
             }
-            // As sRGB, the colours are decoded by the curve, but alpha is not.
+            // Read as sRGB, the colours are decoded by the curve, but alpha is not.
             let curved = decode_photo(&file, Encoding::Srgb).unwrap().image;
             assert!((curved.pixel(19, 13)[1] - srgb_to_linear(99.0 / 255.0)).abs() < 1e-6);
             assert!(channels == 3 || curved.pixel(19, 13)[3] == image.pixel(19, 13)[3]);

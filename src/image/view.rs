@@ -191,7 +191,7 @@ mod tests {
                     let mut bytes = vec![0; 80 * 3];
                     write(&image, layout, &mut bytes).unwrap();
                     let back = read(layout, &bytes).unwrap();
-                    // Rounding errors grow by the slope of the sRGB decoding curve, which is steepest at white: 2.3.
+                    // The sRGB decoding curve multiplies rounding errors by its slope, which is steepest at white: 2.3.
                     let worst = back.data.iter().zip(&image.data).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
                     assert!(worst <= 2.3 * tolerance, "{sample:?} {space:?}: {worst}");
                 }

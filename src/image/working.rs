@@ -9,8 +9,8 @@ use super::{memory, openexr, radiance, raster, tiff};
 use crate::error::Result;
 use image::ImageFormat;
 
-/// Returns an upper bound of the working memory in bytes, from the headers alone. No codec runs. At most the colour
-/// profile is unpacked into memory, which is freed again.
+/// Returns an upper bound of the working memory in bytes, from the headers alone. No codec runs. Only a colour profile
+/// may be unpacked into memory, which is freed before the function returns.
 pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
     let format = Format::of(bytes)?;
     let pixels = match format {

@@ -11,7 +11,7 @@
 //! node are additional.
 //!
 //! Work is divided independently of the number of threads, so equal input yields equal bits. A cancel request is
-//! answered within one row of the largest layer.
+//! answered within the time that one row of the largest layer takes.
 //!
 //! Existing runtimes are not used because they do not suit a library inside another program's process. Each of them
 //! has at least one of these faults: it never ends its own threads, prints to the console, aborts the process when

@@ -338,7 +338,7 @@ fn sum_min_and_max_take_any_number_of_inputs() {
     }
     let [a, b, c] = [&x, &y, &z].map(|t| t.as_floats().unwrap());
     close(&node("Sum", &x, &[("b", &y), ("c", &z)], &[]), &[2, 3], |i| f64::from(a[i] + b[i % 3] + c[i / 3]));
-    // Other operators need two inputs.
+    // An operator with exactly two inputs, such as Add, refuses a single input.
     let file = Writer::new(17, &[2, 3]).node("Add", &["x"], "y", &[]).file();
     assert_eq!(run(&file, &x).unwrap_err().kind, ErrorKind::Format);
 }

@@ -35,7 +35,7 @@ pub(super) fn vote(out: &mut Image, ballot: &Ballot, job: Job, wanted: impl Fn(u
             }
         }
     })?;
-    // Tiles end early when the job is cancelled.
+    // If the job was cancelled, some tiles are missing: return the error.
     job.check()
 }
 
@@ -222,7 +222,7 @@ impl Power {
     fn share(&self) -> f32 {
         let surplus = self.mean - self.exemplar;
         let root = (self.product * self.product - self.difference * surplus).max(0.0).sqrt();
-        // Where mean and choice have the same detail, no share changes it: keep whole pixels.
+        // Where mean and choice have the same fine detail (D = 0), t has no effect on it: keep whole pixels.
         let share = if self.difference > 0.0 { (root - self.product) / self.difference } else { 1.0 };
         share.clamp(0.0, 1.0) as f32
     }
@@ -314,10 +314,11 @@ mod tests {
         let noise: Vec<f32> = (0..140 * 60).map(|_| 0.3 + 0.4 * rng.next_f32()).collect();
         let style = Image::from_fn(140, 60, |x, y| [noise[y * 140 + x]]).unwrap();
         let fine = |mode| detail(&two_pieces(&style, mode));
-        // In noise, the choice has no steps: its detail is that of the exemplar.
+        // In noise, a seam between whole pixels is not visible as a step: the choice has as much detail as the
+        // exemplar.
         let [choice, mean, adaptive] = [VoteMode::Majority, VoteMode::Weighted, VoteMode::Adaptive].map(fine);
-        // The blend of two independent pixels has on average about 0.6 times their detail, and about half of the
-        // pixels near the line are blends.
+        // The weighted mean of two independent pixels has on average about 0.6 times their detail. About half of the
+        // pixels near the line are means of pixels from both pieces.
         assert!(mean < 0.85 * choice, "{mean} {choice}");
         assert!((adaptive / choice - 1.0).abs() < 0.1, "{adaptive} {choice}");
         // Where all patches agree on a pixel, the vote returns the style's colour exactly.

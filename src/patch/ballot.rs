@@ -12,7 +12,7 @@ pub(super) struct Ballot<'a> {
     pub style: &'a Image,
     /// Width of a patch.
     pub patch: usize,
-    /// Mean of the distances of all matches.
+    /// Mean of the distances of all matches, at least 1.
     scale: f64,
 }
 
@@ -44,8 +44,8 @@ impl<'a> Ballot<'a> {
         self.style.pixel(x, y)
     }
 
-    /// Collects the candidates of a pixel. The votes have equal weights, or, if `weighted`, the weight
-    /// `1 / (1 + E / mean E)`, where E is the distance of a match.
+    /// Collects the candidates of a pixel. If `weighted`, a vote has the weight `1 / (1 + E / mean E)`, otherwise 1. E
+    /// is the distance of a match, and `mean E` its mean over all matches of the field.
     #[inline(always)]
     pub fn collect(&self, candidates: &mut Vec<Candidate>, [x, y]: [usize; 2], weighted: bool) {
         let Self { field, patch, scale, .. } = *self;

@@ -17,8 +17,8 @@ pub struct Domain {
 }
 
 impl Domain {
-    /// Returns the patches of width `patch` in an image of `width × height` pixels that lie inside the mask; with
-    /// `any`, also the patches that only overlap the mask.
+    /// Returns the patches of width `patch` in an image of `width × height` pixels that lie entirely inside the mask.
+    /// With `any`, patches that only overlap the mask are included. Without a mask, all patches are included.
     pub fn new(width: usize, height: usize, patch: usize, mask: Option<&[bool]>, any: bool) -> Result<Self> {
         let (w, h) = (width + 1 - patch, height + 1 - patch);
         let mut member = try_vec(w * h, true)?;

@@ -13,7 +13,8 @@ pub struct Field {
     pub height: usize,
     /// Packed positions of the matches, or [`NONE`].
     pub at: Vec<u32>,
-    /// Distances; `u32::MAX` marks a match that is only an initial position for the search (a hint).
+    /// Distances. `u32::MAX` marks a patch without a match, and a match that is only an initial position for the search
+    /// (a hint).
     pub error: Vec<u32>,
 }
 

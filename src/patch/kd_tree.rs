@@ -176,7 +176,7 @@ mod tests {
             [rng.next_f32(), rng.next_f32()]
         });
         base.fill(0, &quantisers, &noise.unwrap(), job.job()).unwrap();
-        // The query is a part of the base.
+        // The query is a rectangle of the base, with its top-left corner at (7, 11).
         let mut query = QuantisedImage::new(30, 20, 2).unwrap();
         for y in 0..20 {
             let from = (y + 11) * base.row_len() + 7 * base.lanes;

@@ -2,10 +2,10 @@
 //!
 //! This is the engine of Fišer et al., "StyLit: Illumination-Guided Example-Based Stylization of 3D Renderings",
 //! §3.3-3.4. It is independent of the meaning of the channels: a [`QuantisedImage`] holds colour and guide channels
-//! multiplied by their weights, so that Eq. 1 is a single sum of squared integer differences, identical to the bit
-//! with and without SIMD. The search is PatchMatch (Barnes et al. 2009) on a fixed grid of tiles that exchange their
-//! borders between iterations. Its random numbers depend on position only, so the field does not depend on the number
-//! of threads. [`KdTree`] is an alternative search, a k-d tree.
+//! multiplied by the square roots of their weights, so that Eq. 1 is a single sum of squared integer differences,
+//! identical to the bit with and without SIMD. The search is PatchMatch (Barnes et al. 2009) on a fixed grid of tiles
+//! that exchange their borders between iterations. Its random numbers depend on position only, so the field does not
+//! depend on the number of threads. [`KdTree`] is an alternative search, a k-d tree.
 //!
 //! A patch is identified by its top-left pixel and always lies inside its image: an image of `W × H` pixels has
 //! `(W - w + 1) × (H - w + 1)` patches of width `w`.

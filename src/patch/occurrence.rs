@@ -86,18 +86,18 @@ mod tests {
         let occurrence = Occurrence::new(&identity, &allowed, 3, 1000.0).unwrap();
         let costs = |o: &Occurrence| allowed.members().iter().map(|&at| o.cost(at)).collect::<Vec<u32>>();
         assert!(costs(&occurrence).iter().all(|c| c.abs_diff(1000) <= 1), "{:?}", costs(&occurrence));
-        // With twice as many patches, uniform usage costs the same.
+        // A field with twice as many patches has the same penalties under uniform usage.
         let twice = Field { width: 14, height: 5, at: [&identity.at[..]; 2].concat(), error: vec![0; 70] };
         let even = Occurrence::new(&twice, &allowed, 3, 1000.0).unwrap();
         assert!(costs(&even).iter().all(|c| c.abs_diff(1000) <= 1));
-        // Move one match from one end to the other and back.
+        // Move one match from the first allowed patch to the last one, and back.
         let (from, to) = (pack(0, 0), pack(6, 4));
         occurrence.replace(from, to);
         assert!(occurrence.cost(from) < 900 && occurrence.cost(to) > 1100);
         assert!(occurrence.cost(pack(3, 2)).abs_diff(1000) <= 1);
         occurrence.replace(to, from);
         assert!(costs(&occurrence).iter().all(|c| c.abs_diff(1000) <= 1));
-        // For any weight, the sum of penalty and distance fits into one integer.
+        // For any weight, the sum of penalty and distance fits into a `u32`.
         let heavy = Occurrence::new(&identity, &allowed, 3, 1e30).unwrap();
         assert!(heavy.cost(from) <= i32::MAX as u32 / 2 + 1);
         assert_eq!(Occurrence::new(&Field::new(3, 3).unwrap(), &allowed, 3, 1.0).unwrap().cost(from), 0);

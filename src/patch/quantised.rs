@@ -49,9 +49,9 @@ pub struct Quantiser {
 }
 
 impl Quantiser {
-    /// Returns quantisers for channels of the given weights (≥ 0, at least one positive). The quantisers are as fine
-    /// as possible while the largest possible sum of squared differences between two patches of width `patch` stays
-    /// below 2³¹.
+    /// Returns quantisers for channels of the given weights (≥ 0, at least one positive). The quantisers are as fine as
+    /// two limits allow: a sample is at most 32,000, and the sum of squared differences between two patches of width
+    /// `patch` stays below 2³¹.
     pub fn for_weights(weights: &[f64], patch: usize) -> Vec<Self> {
         let unit = Self::unit(weights, patch);
         weights.iter().map(|w| Self { scale: (w.sqrt() * unit).min(32_000.0) as f32 }).collect()
@@ -65,8 +65,8 @@ impl Quantiser {
     }
 
     pub fn quantise(self, value: f32) -> i16 {
-        // Add one half to round to the nearest integer. This is possible because the value is non-negative, and avoids
-        // a call of the C library.
+        // Add one half and truncate: this rounds to the nearest integer, because the value is not negative.
+        // `f32::round` would call the C library.
         (value.clamp(0.0, 1.0) * self.scale + 0.5) as i16
     }
 }

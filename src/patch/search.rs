@@ -1,9 +1,9 @@
 //! PatchMatch (Barnes et al. 2009): propagation and random search, with results independent of the number of threads.
 //!
 //! The query image is divided into fixed tiles. An iteration visits the patches of each tile forwards and then
-//! backwards. A patch sees the current matches inside its tile, and the matches from before the iteration outside. All
-//! tiles are written back at the end. With usage penalties, however, tiles run one after the other, and each is written
-//! back before the next one starts.
+//! backwards. A patch sees the current matches of its own tile. Of other tiles, it sees the matches from before the
+//! iteration, because all tiles are written back at the end. With usage penalties, tiles run one after the other
+//! instead, and each is written back before the next one starts.
 
 use super::domain::Domain;
 use super::field::Field;
@@ -182,8 +182,8 @@ impl Tile {
         }
     }
 
-    /// Runs an iteration over the active patches of this tile, forwards and then backwards. Returns whether any patch
-    /// needed a search.
+    /// Runs an iteration over the active patches of this tile, forwards and then backwards. Without usage penalties,
+    /// patches whose distance is 0 are skipped. Returns whether any patch needed a search.
     fn search(
         &mut self,
         search: &Search,
@@ -332,7 +332,8 @@ impl Best {
         }
         let (px, py) = (px as usize, py as usize);
         let at = pack(px, py);
-        // Skip the current match, because its distance is known, unless it is a hint, whose distance is not.
+        // Skip the current match if its distance is known. (The distance of a hint is not.) Skip positions that are not
+        // allowed.
         if (at == self.at && self.cost != u32::MAX) || !search.allowed.contains(px, py) {
             return;
         }

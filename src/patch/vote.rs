@@ -15,7 +15,7 @@ use crate::job::Job;
 pub enum VoteMode {
     /// The mean, as in StyLit.
     Plain,
-    /// The mean weighted by `1 / (1 + E / mean E)`, where E is the distance of a match.
+    /// The mean weighted by `1 / (1 + E / mean E)`. E is the distance of a match, and `mean E` its mean over the field.
     Weighted,
     /// The pixel whose colour is closest to the mean: introduces no new colours, so texture keeps its contrast.
     Nearest,

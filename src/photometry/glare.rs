@@ -5,8 +5,8 @@
 //! Glare sources are the 4-connected regions of at least a threshold luminance. Rating each luminaire by its mean
 //! luminance would underestimate the glare of emissive textures, which are not uniform (Scheir et al. 2017). The
 //! background luminance is the mean over the rest of the image, weighted by the contribution of each pixel to the
-//! illuminance at the eye; a wider image makes it more accurate. The position index is Guth's above the line of sight,
-//! and that of Iwata and Tokura (1997) below, as in `evalglare`.
+//! illuminance at the eye; a wider image makes this mean more accurate. The position index is Guth's above the line of
+//! sight, and that of Iwata and Tokura (1997) below, as in `evalglare`.
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour, try_vec};
@@ -18,8 +18,8 @@ pub struct Params {
     /// Vertical angle of view of the image in radians, in `(0, π)`. The line of sight is horizontal, through the
     /// centre of the image.
     pub fov_y: f64,
-    /// A pixel belongs to a glare source if its luminance in cd/m² is at least this value; 0 selects five times the
-    /// mean of the image.
+    /// A pixel belongs to a glare source if its luminance in cd/m² is at least this value. 0 selects five times the
+    /// mean luminance of the image, weighted by solid angle.
     pub threshold: f64,
 }
 
@@ -92,8 +92,8 @@ fn default_threshold(pixels: usize, luminance: &impl Fn(usize) -> f64, view: &Vi
     5.0 * light / angle
 }
 
-/// Returns the background luminance: the mean over the given pixels, weighted by the cosine at the eye and the solid
-/// angle.
+/// Returns the background luminance: the mean over the given pixels, weighted by solid angle and by the cosine of the
+/// angle to the line of sight. 0 if there are no pixels.
 fn background(pixels: impl Iterator<Item = usize>, luminance: &impl Fn(usize) -> f64, view: &View) -> f64 {
     let (mut light, mut weight) = (0.0, 0.0);
     for i in pixels {

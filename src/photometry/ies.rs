@@ -49,9 +49,9 @@ impl<'a> Words<'a> {
 /// `Format`, with the line number, if the file is malformed; `Unsupported` for photometry of types A and B.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let text = Lines::new(bytes)?;
-    // Editions before LM-63-2002 state the ballast-lamp factor in this place. LM-63-2002 reserves the place for future
-    // use. LM-63-2019 states there how the file was made ("file generation type", such as 1.1 for an accredited
-    // laboratory).
+    // The number after the ballast factor has three meanings. Before LM-63-2002 it is the ballast-lamp factor.
+    // LM-63-2002 reserves it for future use. In LM-63-2019 it states how the file was made ("file generation type",
+    // such as 1.1 for an accredited laboratory).
     let edition = text.numbered().next().map_or("", |(_, line)| line).to_ascii_uppercase();
     let has_lamp_factor = !["IESNA:LM-63-2002", "IES:LM-63-"].iter().any(|later| edition.starts_with(later));
     let mut lines = text.numbered();

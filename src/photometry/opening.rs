@@ -28,7 +28,8 @@ pub enum Opening {
     Ellipsoid(DVec3),
 }
 
-/// A flat part of an opening as seen from a direction: a parallelogram or an ellipse.
+/// A flat face, a parallelogram or an ellipse, that stands for a luminous part of an opening. It holds for one viewing
+/// direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     pub centre: DVec3,
@@ -38,13 +39,14 @@ pub struct Face {
 }
 
 impl Face {
-    /// Returns the area in m² as seen from a unit direction.
+    /// Returns the projected area of the face in m², as seen from far away along the unit vector `direction`.
     pub fn projected_area(&self, direction: DVec3) -> f64 {
         let share = if self.is_round { FRAC_PI_4 } else { 1.0 };
         self.sides[0].cross(self.sides[1]).dot(direction).abs() * share
     }
 
-    /// Maps the unit square to the face such that equal areas stay equal; ellipses by Shirley and Chiu (1997).
+    /// Maps the unit square to the face. Regions of equal area have images of equal area; for an ellipse, the map is
+    /// that of Shirley and Chiu (1997).
     pub fn point(&self, [u, v]: [f64; 2]) -> DVec3 {
         let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
         let (x, y) = match self.is_round {
@@ -58,9 +60,10 @@ impl Face {
 }
 
 impl Opening {
-    /// The opening with the given dimensions in metres along C = 0, along C = 90 and along the axis. A negative
+    /// Returns the opening with the given dimensions in metres along C = 0, along C = 90 and along the axis. A negative
     /// dimension is a diameter. `side_heights` are the luminous heights of a box's sides towards C = 0, 90, 180 and
-    /// 270, if they differ from its height. `None` for a luminaire without area, which is a point.
+    /// 270; without them, each side is luminous over the full height of the box. Returns `None` for a luminaire without
+    /// area, which is a point, or with infinite area.
     pub fn new([x, y, z]: [f64; 3], side_heights: Option<[f64; 4]>) -> Option<Self> {
         // If a round opening states only one diameter, it has this diameter along both axes.
         let (x, y) = match (x, y) {
@@ -85,8 +88,8 @@ impl Opening {
         (is_finite && opening.largest_area() > MIN_AREA).then_some(opening)
     }
 
-    /// Returns the flat faces that stand for the luminous area as a distant observer in a unit direction sees it. Their
-    /// projected areas sum to that of the opening.
+    /// Returns flat faces that look like the opening to an observer far away; `direction` is the unit vector towards
+    /// the observer. The projected areas of the faces add up to the projected area of the opening.
     pub fn faces(&self, direction: DVec3) -> Vec<Face> {
         match *self {
             Self::Box { size, heights } => box_faces(size, heights, direction),
@@ -102,7 +105,8 @@ impl Opening {
         }
     }
 
-    /// Returns the luminous area in m² as seen from a unit direction, with dark parts of a box's sides left out.
+    /// Returns the projected luminous area in m², as seen from far away along the unit vector `direction`. Dark parts
+    /// of a box's sides are left out.
     pub fn projected_area(&self, direction: DVec3) -> f64 {
         let u = direction.abs();
         match *self {
@@ -119,7 +123,7 @@ impl Opening {
         }
     }
 
-    /// Returns the largest of the areas in m² as seen along x, y and z.
+    /// Returns the largest projected luminous area in m², as seen from ±x, ±y and ±z.
     pub fn largest_area(&self) -> f64 {
         DVec3::AXES.iter().flat_map(|&axis| [axis, -axis]).map(|u| self.projected_area(u)).fold(0.0, f64::max)
     }

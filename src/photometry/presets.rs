@@ -1,10 +1,11 @@
 //! Requirements of EN 12464-1 for common rooms: maintained illuminance, glare, uniformity, colour rendering, and
 //! illuminance of walls and ceilings.
 //!
-//! This is a short excerpt for design, as luminaire manufacturers quote it publicly, with the edition of each row. For
-//! schools and libraries: the tables of 2021 as quoted by Glamox. For offices: 500 lx with U0 0.6, and 300 lx with U0
-//! 0.4, as quoted by Trilux, Fagerhult and Performance in Lighting, with walls and ceilings of the 2011 edition. Only
-//! the standard itself is authoritative.
+//! This is a short excerpt for design. The values are those that luminaire manufacturers quote publicly, and each row
+//! states its edition of the standard. The rows of schools and libraries are from the tables of 2021, as quoted by
+//! Glamox. The rows of offices have 500 lx with U0 0.6, and 300 lx with U0 0.4, as quoted by Trilux, Fagerhult and
+//! Performance in Lighting; their walls and ceilings are from the edition of 2011. Only the standard itself is
+//! authoritative.
 
 use std::ffi::CStr;
 
@@ -62,8 +63,8 @@ impl Preset {
         PRESETS.iter().find(|p| p.name.to_bytes() == name.as_bytes())
     }
 
-    /// Returns the requirements that a task area fails, given its minimum and mean illuminance in lux, and its glare
-    /// rating if known.
+    /// Returns the requirements that a task area fails, given its minimum and mean illuminance in lux and its glare
+    /// rating. An unknown glare rating (`None`) counts as met.
     pub fn check(&self, minimum: f64, mean: f64, glare: Option<f64>) -> Vec<Shortfall> {
         let bright = mean >= self.illuminance;
         let even = mean > 0.0 && minimum / mean >= self.uniformity;

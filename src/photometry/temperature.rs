@@ -13,7 +13,7 @@ pub const MIN_KELVIN: f64 = 1000.0;
 pub const MAX_KELVIN: f64 = 20_000.0;
 
 /// Number of steps of the initial scan, all of the same size in mired. Within any two neighbouring steps, the distance
-/// to the locus has a single minimum.
+/// of a colour from the locus has a single minimum.
 const SCAN: usize = 96;
 /// Number of golden-section steps, after which the interval has shrunk to rounding error.
 const SECTIONS: usize = 60;
@@ -52,7 +52,8 @@ pub fn of_chromaticity(xy: DVec2) -> Temperature {
     Temperature { kelvin, duv: side * uv.distance(nearest) }
 }
 
-/// Returns the CIE 1931 chromaticity of a temperature and a distance from the locus.
+/// Returns the CIE 1931 chromaticity of a temperature and a distance from the locus. The temperature is clamped to
+/// `[MIN_KELVIN, MAX_KELVIN]`.
 pub fn chromaticity_of(temperature: Temperature) -> DVec2 {
     let kelvin = temperature.kelvin.clamp(MIN_KELVIN, MAX_KELVIN);
     // Along the locus u falls as the temperature rises. Rotate the tangent to obtain the normal that points up.
@@ -62,8 +63,8 @@ pub fn chromaticity_of(temperature: Temperature) -> DVec2 {
     from_1960(locus(kelvin) + normal * temperature.duv)
 }
 
-/// Returns the linear RGB colour of luminance 1 with this temperature and distance from the locus. Channels are
-/// negative if the colour is out of gamut (below about 1900 K).
+/// Returns the linear RGB colour of luminance 1 with this temperature and distance from the locus. A colour out of
+/// gamut has a negative channel; blackbodies are out of gamut below about 1900 K.
 pub fn to_rgb(temperature: Temperature) -> DVec3 {
     let xy = chromaticity_of(temperature);
     to_xyz().inverse() * DVec3::new(xy.x / xy.y, 1.0, (1.0 - xy.x - xy.y) / xy.y)
@@ -150,8 +151,8 @@ fn to_xyz() -> DMat3 {
 mod tests {
     use super::*;
 
-    /// The published chromaticities of standard illuminants (CIE 15, table T.3) give their temperatures and distances
-    /// Duv.
+    /// The published chromaticities of standard illuminants (CIE 15, table T.3) must yield the temperatures and Duv of
+    /// these illuminants.
     #[test]
     fn standard_illuminants() {
         for (xy, kelvin, duv) in [

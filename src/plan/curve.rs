@@ -8,9 +8,10 @@ pub(super) struct Curve {
     /// Minimum and maximum time in seconds that the stage can use; 0 < minimum <= maximum.
     pub min_seconds: f64,
     pub max_seconds: f64,
-    /// Ascending times in seconds, each with the squared error after this time. Between two points the squared error
-    /// falls as a power of the time, whose exponent is clamped to [`POWERS`]. After the last point the exponent of the
-    /// last interval continues, but is at most [`MAX_EXTRAPOLATED`].
+    /// Ascending times in seconds, each with the squared error after this time. In each of the two intervals the
+    /// squared error is proportional to time^-p. The exponent p follows from the ends of the interval and is clamped to
+    /// [`POWERS`]; a clamped curve passes through the middle point only. The curve continues before the first point,
+    /// and after the last point with p at most [`MAX_EXTRAPOLATED`].
     pub points: [[f64; 2]; 3],
 }
 
@@ -99,7 +100,7 @@ mod tests {
             (curve.squared_error(64.0) - 0.5).abs() < 1e-9
                 && (curve.squared_error(2.0) - 64.0 / 8f64.sqrt()).abs() < 1e-9
         );
-        // Between these points the exponent is 2.66; after the last point it is limited to 2.
+        // Between the points below, the exponent is 2.66. After the last point it is limited to 2.
         let steep = Curve { points: [[1.0, 320.0], [4.0, 8.0], [16.0, 0.2]], ..curve };
         assert!((steep.squared_error(1.0) - 320.0).abs() < 1e-9 && (steep.squared_error(16.0) - 0.2).abs() < 1e-9);
         assert!((steep.squared_error(64.0) - 0.2 / 16.0).abs() < 1e-9);
@@ -111,12 +112,13 @@ mod tests {
 
     #[test]
     fn time_goes_where_it_lowers_the_error_most() {
-        // For squared errors a / t and b / t, the optimal times are proportional to the square roots of a and b.
+        // For the squared errors a / t₁ and b / t₂ of two stages with the times t₁ and t₂, the optimal times are
+        // proportional to √a and √b.
         let curves = [monte_carlo(1.0), monte_carlo(9.0)];
         let seconds = allocate(&curves, Goal::Seconds(8.0));
         assert!((seconds.iter().sum::<f64>() - 8.0).abs() < 1e-9);
         assert!((seconds[0] - 2.0).abs() < 0.05, "{seconds:?}");
-        // For an error goal the proportions are the same; the squared error is (sqrt a + sqrt b)² / t.
+        // For an error goal, the optimal times have the same ratio, and the squared error is (√a + √b)² / (t₁ + t₂).
         let seconds = allocate(&curves, Goal::Error(0.2));
         let squared_error: f64 = curves.iter().zip(&seconds).map(|(c, &s)| c.squared_error(s)).sum();
         assert!(squared_error <= 0.04 && squared_error > 0.039, "{squared_error}");

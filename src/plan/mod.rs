@@ -5,9 +5,9 @@
 //!
 //! The cost of a path and the variance of paths depend on the machine and the scene. No formula predicts them, so they
 //! are measured: a few tiles of the image are rendered ([`picture`], `render::pilot`), and a few paths of the solution
-//! are traced ([`strength`]). Along the resulting curves of error against time, the time is allocated in small steps,
-//! each to the stage where it lowers the error of the picture most ([`curve`]). A stylisation is tried with settings
-//! from quick to careful at reduced resolution (`stylisation`).
+//! for the emission's strength are traced ([`strength`]). Along the resulting curves of error against time, the time is
+//! allocated in small steps, each to the stage where it lowers the error of the picture most ([`curve`]). A stylisation
+//! is tried with settings from quick to careful at reduced resolution (`stylisation`).
 //!
 //! Errors refer to the picture: root mean square over its pixels, relative to its mean, as in
 //! [`crate::render::Film::error`]. An error of the emission's strength scales the emission's light in the picture by a
@@ -20,8 +20,8 @@
 //! Not modelled:
 //!
 //! - the stages before the lighting: they have no settings that trade error for time, and report their own errors;
-//! - bright paths so rare that a plan meets few or none of them, such as those of a small lamp seen in a polished
-//!   surface: the picture's error may then be half or twice the expected error;
+//! - bright paths so rare that the tiles of the plan contain few or none of them, such as those of a small lamp seen in
+//!   a polished surface: the picture's error may then be half or twice the expected error;
 //! - the overshoot of a picture that stops at a target error: up to one pass;
 //! - the layers that are rendered beside the main image ([`crate::render::Outputs`]), which take time of their own.
 
@@ -84,8 +84,8 @@ fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
 }
 
 /// If a stage stops at a target error, the number of its paths is limited to this multiple of the expected number. The
-/// error falls with the square root of the number of paths. So any value from 2 to 8 gives the same result if the error
-/// was predicted to within a factor of 1.4 = √2; `make bench ONLY=plan` prints how accurate the predictions are.
+/// error is proportional to 1 / √n after n paths. So any value from 2 to 8 gives the same result if the error was
+/// predicted to within a factor of 1.4 = √2; `make bench ONLY=plan` prints how accurate the predictions are.
 /// [convention]
 const MAX_COST: f64 = 4.0;
 /// A stage with a time budget may take at most this many times the expected time. The bench prints the share of stages

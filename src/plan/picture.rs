@@ -13,8 +13,8 @@ use crate::scene::Camera;
 const MIN_PATHS: f64 = REPLICATIONS as f64;
 /// Maximum number of paths per pixel. [convention]
 const MAX_PATHS: f64 = (1u32 << 20) as f64;
-/// Number of paths per pixel after which adaptive sampling starts if there is a target error, as in the renderer.
-/// [convention]
+/// Number of paths per pixel after which adaptive sampling starts if there is a target error; the renderer uses the
+/// same number. [convention]
 const ADAPTIVE_FROM: f64 = pilot::MIN_UNIFORM_PATHS as f64;
 
 /// A planned rendering.
@@ -120,8 +120,9 @@ impl Picture {
                 uniform(counts.find(|&paths| self.error(paths) <= wanted).unwrap_or(ADAPTIVE_FROM as u32))
             }
             Goal::Seconds(_) => {
-                // Candidates are the largest number of paths that the time allows, and that number with its lowest bits
-                // cleared, which consists of fewer nets. Use the candidate with the smallest expected error.
+                // Candidates are the largest number of paths that the time allows, and the numbers that remain if its
+                // lowest bits are cleared: these numbers consist of fewer nets. Use the candidate with the smallest
+                // expected error.
                 let max_paths = count(uniform_paths);
                 let whole = (0..max_paths.ilog2())
                     .map(|bits| max_paths >> bits << bits)

@@ -10,7 +10,7 @@ use crate::render::World;
 use glam::Vec3;
 
 /// Number of paths per trial solution (`TRIAL`), and number of timed trials (`TRIALS`). Several trials are averaged,
-/// because the standard error that a trial reports is known only to within 13 %.
+/// because the standard error that one trial reports has itself a relative standard error of 13 %.
 const TRIAL: u32 = 4096;
 const TRIALS: u64 = 6;
 /// Constant that is XORed with the seed of the solution, so that the trials trace other random paths than the solution.
@@ -18,8 +18,8 @@ const TRIAL_SEED: u64 = 0x7472_6961_6c73_2121;
 /// Target radiance of the first trial, in cd/m². It exceeds all other light of a scene by far, so that the emission
 /// must supply it. [convention]
 const DOMINANT: f32 = 1e9;
-/// Minimum and maximum number of paths of a solution: the paths of its first round, and the limit of
-/// [`relight::Params::paths`]. [convention]
+/// Minimum and maximum number of paths of a solution: the paths of its first round, and the largest value that
+/// [`relight::Params::paths`] allows. [convention]
 const SOLUTION_PATHS: [f64; 2] = [(relight::BATCHES as u32 * relight::FIRST_ROUND) as f64, (1u32 << 30) as f64];
 /// Half-width of a 95 % confidence interval in standard errors: Student's factor for the number of batches used.
 /// [convention]
@@ -28,7 +28,8 @@ const HALF_WIDTH: f64 = 2.04;
 /// Measured cost and error of the solution for the emission's strength.
 pub(super) struct Strength {
     seconds_per_path: f64,
-    /// Relative half-width of the confidence interval of a trial, as a root mean square over the trials.
+    /// Half-width of the confidence interval of a trial's solution, relative to the solution; the root mean square over
+    /// the trials.
     half_width: f64,
 }
 
@@ -37,8 +38,8 @@ impl Strength {
     ///
     /// A first trial only measures b and r: the target's radiance from other lights, and from the unscaled emission.
     /// Its own solution, for the radiance [`DOMINANT`], is not used. The timed trials then solve for the current
-    /// radiance b + r. Another radiance would do as well: the solution is (target - b) / r, and for b = 0 its relative
-    /// error does not depend on the target.
+    /// radiance b + r. Another target would give nearly the same relative error: the solution is (target - b) / r, and
+    /// if b = 0, its relative error does not depend on the target.
     pub fn new(
         (world, emitter, target_triangles): (&World, usize, &[(usize, usize)]),
         params: &relight::Params,

@@ -41,7 +41,7 @@ pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job
 /// Returns a list of settings, in the order from quick to careful, and the index of the reference settings
 /// (`Params::fast`) in this list. The settings come from the Pareto front in `benches/stylit.rs`.
 fn ladder(params: &Params) -> (Vec<Params>, usize) {
-    // This mode makes one matching pass, so its settings offer no choice.
+    // The greedy mode makes one matching pass: it has no settings that trade error for time.
     if params.mode == Mode::Greedy {
         return (vec![params.clone()], 0);
     }

@@ -20,8 +20,8 @@ pub struct Biweight {
 /// standard deviation of the residuals.
 const INTERVALS: usize = 64;
 
-/// `MIN_DEVIATION`: smallest standard deviation for which the means are integrated; for smaller ones, its means are
-/// used. `STEPS`: number of integration steps. [rounding]
+/// `MIN_DEVIATION`: smallest standard deviation for which the means are integrated; a smaller standard deviation gets
+/// the means of this one. `STEPS`: number of integration steps. [rounding]
 const MIN_DEVIATION: f64 = 1e-3;
 const STEPS: usize = 256;
 

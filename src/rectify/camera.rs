@@ -35,7 +35,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let orthogonal = &found.points[..found.points.len().min(3)];
     let Focal { focal, spread: focal_spread, source } = focal_length(orthogonal, principal, params.focal, expected);
 
-    // Drop each direction that is far from orthogonal to a direction with better support: it is not a room axis.
+    // Drop each direction within 66 degrees of a direction with better support: it is not a room axis.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
     let mut chosen: Vec<usize> = Vec::new();
     for (k, p) in orthogonal.iter().enumerate() {
@@ -129,9 +129,9 @@ pub fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
     (point.truncate() - principal * point.z).extend(point.z * focal).normalize()
 }
 
-/// Estimates the logarithm of the focal length in pixels, and its standard deviation. `start` is a first guess in
-/// pixels. `None` if the points do not determine the focal length, or if it differs from `start` by more than a factor
-/// of 10.
+/// Estimates the logarithm of the focal length in pixels, and the standard deviation of this logarithm. `start` is a
+/// first guess of the focal length in pixels. `None` if the points do not determine the focal length, or if the
+/// estimate differs from `start` by more than a factor of 10.
 ///
 /// The directions of two points `(v1, w1)` and `(v2, w2)` (homogeneous pixels) are orthogonal if
 /// `(v1 - w1 c) · (v2 - w2 c) + f² w1 w2 = 0`, where `c` is the principal point. Each pair gives one such equation,

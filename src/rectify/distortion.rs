@@ -25,12 +25,14 @@ pub struct Distortion {
     pub corner: f64,
     /// Standard deviation of `corner`, including the deviation of real lenses from this model.
     pub error: f64,
-    /// Number of traced segments that are consistent with the estimate.
+    /// Number of traced segments whose estimate of k lies within the biweight's limit around `corner`.
     pub segments: usize,
 }
 
 /// `MIN_LENGTH`: minimum length of the segments used. `TRIM`: length left out at each end of a segment, because
-/// corners bend edges there. Both are in pixels. [origin not recorded]
+/// corners bend edges there. Both are in pixels. The weight of a segment grows with the fifth power of its length: one
+/// of 30 pixels weighs 1/400 of one of 100 pixels, so shorter ones would cost time and change little. The length left
+/// out is 2.5 standard deviations of the Gaussian plus the one pixel that the Scharr derivative reaches. [convention]
 const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
 /// Number of pixels on each side of a segment within which its edge is searched for.
@@ -40,20 +42,22 @@ const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of traced segments; with fewer segments there is no estimate.
 const MIN_SEGMENTS: usize = 12;
 /// Error of an edge's position, in pixels, that the residuals of the fitted parabola do not show. Its square is added
-/// to the variance of the residuals. [origin not recorded]
+/// to the variance of the residuals. The parabola through three samples of a smoothed step is off by up to 0.02 pixels,
+/// and along an edge nearly parallel to the pixel rows this error changes so slowly that the residuals do not show it.
+/// Without a floor, an edge without residuals would have an infinite weight. [rounding]
 const POSITION_FLOOR: f64 = 0.01;
 /// A segment is ignored if the root mean square residual of its edge about the fitted parabola is above this, in
 /// pixels. [origin not recorded]
 const MAX_RESIDUAL: f64 = 0.25;
 /// Limit of Tukey's biweight in standard deviations (95 % efficiency). [convention]
 const BIWEIGHT_LIMIT: f64 = 4.685;
-/// Assumed number of detected segments per physical line, for example both sides of a frame or the pieces of one line.
-/// Segments of one line have dependent errors. The stated error is proportional to the square root of this number. The
-/// test prints the quantiles of true over stated error. [bench: `tests/real_rectify.rs`]
+/// Assumed number of detected segments per physical line: a line may be detected in several pieces, and a frame has two
+/// sides. Segments of one line have dependent errors. The stated error is proportional to the square root of this
+/// number. The test prints the quantiles of true over stated error. [bench: `tests/real_rectify.rs`]
 const SEGMENTS_PER_LINE: f64 = 2.0;
-/// Standard deviation of `Distortion::corner` beyond its sampling error, because real lenses deviate from the model. It
-/// is measured on views cut out of panoramas, whose true distortion is 0 apart from errors of stitching: the root mean
-/// square of the estimates. [bench: `tests/real_rectify.rs`]
+/// Standard deviation of `Distortion::corner` beyond its sampling error, because real lenses deviate from the model.
+/// The value is the root mean square of the estimates for views cut out of panoramas. Their true distortion is 0, apart
+/// from errors of stitching. [bench: `tests/real_rectify.rs`]
 const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few
@@ -71,7 +75,7 @@ pub fn measure(gradients: &Gradients, segments: &[Segment], centre: DVec2) -> Op
 /// The estimate of k from one traced segment, with its weight.
 #[derive(Clone, Copy, Debug)]
 struct LineEstimate {
-    /// Estimate of k from the curvature without its term `3 k d² / R²`.
+    /// Estimate of k from the curvature, with the term `3 k d² / R²` neglected.
     corner: f64,
     /// Inverse variance of the estimate.
     weight: f64,
@@ -104,15 +108,16 @@ fn is_parabola(pieces: &[&Edge]) -> bool {
     parabola(&along([first.a, last.b], &points)).is_some()
 }
 
-/// Returns points as distances along and across the line from `a` to `b`.
+/// Returns the coordinates of points relative to `a` in pixels: x along the line from `a` to `b`, y across it.
 fn along([a, b]: [DVec2; 2], points: &[DVec2]) -> Vec<DVec2> {
     let along = (b - a).normalize_or_zero();
     points.iter().map(|p| DVec2::new(along.dot(p - a), along.perp().dot(p - a))).collect()
 }
 
 /// Locates the edge along a segment, once per pixel of length. Each position is the maximum of the gradient across the
-/// segment with the polarity of the edge, so that neighbouring edges of opposite polarity do not bias it. `None` if too
-/// little of the edge is found.
+/// segment. Only gradients with the polarity of the edge count: neighbouring edges of opposite polarity then do not
+/// bias the position. `None` if the segment is shorter than [`MIN_LENGTH`], or if less than [`MIN_COVERAGE`] of its
+/// edge is found.
 fn trace(gradients: &Gradients, segment: &Segment) -> Option<Edge> {
     let length = segment.length();
     if length < MIN_LENGTH {
@@ -165,8 +170,9 @@ fn slope(gradients: &Gradients, at: DVec2, direction: DVec2) -> f64 {
     row(first) * (1.0 - f.y) + row(first + gradients.width) * f.y
 }
 
-/// Fits a least-squares parabola to the points, by polynomials that are orthogonal on the points. Returns its
-/// quadratic coefficient and the variance of that coefficient.
+/// Fits a least-squares parabola to the points, by polynomials that are orthogonal on the points. Returns its quadratic
+/// coefficient and the variance of that coefficient. `None` if there are fewer than 8 points, or if their root mean
+/// square residual is not below [`MAX_RESIDUAL`].
 fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     let count = points.len() as f64;
     if points.len() < 8 {
@@ -183,7 +189,8 @@ fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     let ((tilt, _), (bend, square)) = (part(&first), part(&second));
     let residual = |p: &DVec2| p.y - mean.y - tilt * first(p) - bend * second(p);
     let noise = points.iter().map(|p| residual(p).powi(2)).sum::<f64>() / (count - 3.0);
-    // Gaussian smoothing correlates neighbouring samples: this is their correlation length in pixels.
+    // Gaussian smoothing correlates neighbouring samples. `shared` is their correlation length in pixels: the number of
+    // samples that count as one.
     let shared = 2.0 * std::f64::consts::PI.sqrt() * f64::from(SIGMA);
     let variance = (noise + POSITION_FLOOR * POSITION_FLOOR) * shared / square;
     (noise < MAX_RESIDUAL * MAX_RESIDUAL && variance > 0.0 && variance.is_finite()).then_some((bend, variance))
@@ -205,7 +212,8 @@ fn combine(estimates: &[LineEstimate]) -> Option<Distortion> {
 }
 
 /// Returns the result of one step of the M-estimate: the weighted mean over the segments within the biweight's limit
-/// around `corner`. Its standard deviation follows from the scatter of these segments and from [`MODEL_ERROR`].
+/// around `corner`. The standard deviation of the mean follows from the scatter of these segments and from
+/// [`MODEL_ERROR`].
 fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     let off = estimates.iter().map(|s| ((s.corner - corner).abs() * s.weight.sqrt(), 1.0)).collect();
     let limit = BIWEIGHT_LIMIT * (1.4826 * weighted_median(off).unwrap_or(0.0)).max(1.0);
@@ -275,7 +283,8 @@ mod tests {
         }
     }
 
-    /// A ceiling of tiles in the upper half of a photo, whose edges sag by 1.2 pixels between the bars that carry them.
+    /// A photo whose upper half shows a ceiling of tiles. The edges of the tiles sag by 1.2 pixels between the bars
+    /// that carry the tiles.
     #[test]
     fn tiles_that_sag_between_their_bars_are_no_distortion() {
         let tiles = Image::from_fn(640, 480, |x, y| {

@@ -12,7 +12,8 @@ pub struct Edge {
     pub points: Vec<DVec2>,
 }
 
-/// The gap between two pieces is at most this share of the shorter piece. [judged on 77 photos]
+/// Maximum gap between two pieces, as a share of the shorter piece's length; `MAX_STEP` pixels are added to it.
+/// [judged on 77 photos]
 const MAX_GAP: f64 = 0.5;
 /// The second piece starts at most this number of pixels beside the line of the first. [judged on 77 photos]
 const MAX_STEP: f64 = 2.0;
@@ -21,7 +22,7 @@ const MAX_STEP: f64 = 2.0;
 const MAX_TURN: f64 = 0.035;
 
 /// Groups edges that are pieces of one line, in their order along the line. The nearest pieces are joined first, and
-/// each end is joined at most once.
+/// each end is joined at most once. An edge that is joined to no other edge is a group of its own.
 pub fn lines(edges: &[Edge]) -> Vec<Vec<&Edge>> {
     let mut joints: Vec<(f64, usize, usize)> = Vec::new();
     for (i, edge) in edges.iter().enumerate() {

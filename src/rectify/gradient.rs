@@ -27,8 +27,8 @@ pub struct Gradients {
     pub magnitude: Vec<f32>,
 }
 
-/// Computes luma: the luminance relative to the photo's white (its 95th percentile), encoded by a square root. The
-/// result is NaN where the photo is not finite.
+/// Computes luma: the luminance divided by the photo's white, clamped to `[0, CLIP]`, and encoded by a square root.
+/// White is the 95th percentile of the luminances above 0. The result is NaN where the photo is not finite.
 pub fn encoded_luma(photo: &Image, job: Job) -> Result<Image> {
     let mut luma = Image::new(photo.width, photo.height, 1)?;
     exec::for_rows(&mut luma.data, photo.width, job, |y, row| {

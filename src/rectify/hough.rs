@@ -13,8 +13,8 @@ use std::f64::consts::PI;
 /// Number of angle bins of the accumulator over half a turn: one per half degree.
 const ANGLES: usize = 360;
 
-/// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side in pixels; 8 votes if
-/// that is fewer. `MAX_LINES`: maximum number of lines returned. The bench prints the accuracy from Hough lines.
+/// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side in pixels, but never
+/// less than 8 votes. `MAX_LINES`: maximum number of lines returned. The bench prints the accuracy from Hough lines.
 /// [bench vp]
 const MIN_VOTES: f64 = 0.06;
 const MAX_LINES: usize = 600;
@@ -100,7 +100,7 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
 }
 
 /// Cuts each line into the pieces that edge pixels of similar gradient direction cover, and refits each piece by least
-/// squares. An edge pixel that lies on several lines counts for the line with the most votes.
+/// squares. Lines with more votes come first. An edge pixel counts only for the first line of which it covers a piece.
 pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, job: Job) -> Result<Vec<Segment>> {
     let centre = DVec2::new(gradients.width as f64, gradients.height as f64) / 2.0;
     let min_agreement = (2.0 * band).max(5f64.to_radians()).cos();

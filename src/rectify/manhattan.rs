@@ -12,8 +12,8 @@ use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Focal lengths tried in addition to the focal lengths that pairs of candidates imply, in units of half the longer
-/// image side: angles of view from 20 to 110 degrees. The bench prints the accuracy with an unknown and with the known
-/// focal length; the difference is what the search for it costs. [bench vp]
+/// image side: angles of view from 20 to 110 degrees. The bench prints the accuracy for an unknown and for a known
+/// focal length; the difference is the loss by the search for the focal length. [bench vp]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
 /// Prior of the focal length in the search. `USUAL_FOCAL`: median in units of half the longer image side. For a
@@ -24,15 +24,18 @@ const SEARCH_SPREAD: f64 = 0.4;
 
 /// Penalty of a triplet whose focal length deviates from the prior by one standard deviation, as a share of the total
 /// weight of the lines: the triplet must explain this much more weight than a triplet at the median focal length. The
-/// bench shows its effect as for [`FOCALS`]. [bench vp]
+/// bench prints the accuracy for an unknown focal length, in which this penalty matters. [bench vp]
 const FOCAL_COST: f64 = 0.004;
 
 /// Share of a line's weight that the search for further candidates ignores if a candidate explains the line completely.
 /// [origin not recorded]
 const EXPLAINED_SHARE: f32 = 0.9;
 
-/// Two candidates may be orthogonal at a listed focal length if the cosine of the angle between their directions is
-/// below this: within 9 degrees of a right angle. [origin not recorded]
+/// Two candidates are paired at a focal length, the given one or one of [`FOCALS`], if the magnitude of the cosine of
+/// the angle between their directions is below this: within 9 degrees of a right angle. If the true focal length
+/// lies half a step, a factor of √1.36, beside a listed one, the cosine of a right angle is at most
+/// (1.36 - 1) / (1.36 + 1) = 0.15; the steps of [`FOCALS`] up to 2.2 are factors of 1.29 to 1.37. A smaller limit would
+/// miss pairs between two listed focal lengths, a larger one would take many pairs for both. [convention]
 const MAX_COSINE: f64 = 0.15;
 
 /// Two triplets are similar if each axis of one is within 1.8 degrees (`MIN_AXIS_COSINE`) of an axis of the other, and
@@ -230,9 +233,10 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
             else {
                 continue;
             };
-            // The residual is the sine of the angle between the line and the direction from its midpoint to p: l · p
-            // divided by the distance of p from the midpoint, with p = (dx, dy, dz / f). Compute the derivative of
-            // `l · p` with respect to the rotation vector and ln f, and treat the distance as constant.
+            // The residual is the sine of the angle between the line l and the direction from its midpoint to the
+            // vanishing point p = (dx, dy, dz / f) of the axis d. It equals l · p divided by the distance of p from the
+            // midpoint. Compute the derivative of `l · p` with respect to the rotation vector and ln f, and treat the
+            // distance as constant.
             let (l, d, p) = (e.line.line, current.axes.col(k), points[k]);
             let distance = (p.truncate() - e.line.centre * p.z).length();
             if distance < 1e-9 {

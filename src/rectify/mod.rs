@@ -218,6 +218,6 @@ pub struct Unwarped {
     pub corners: [DVec2; 4],
     /// Confidence in the aspect ratio, in `[0, 1]`; low if the focal length had to be assumed.
     pub aspect_confidence: f64,
-    /// Expected error of each corner in unwarped pixels.
+    /// Expected error of each corner, as a root mean square in unwarped pixels.
     pub corner_error: [f64; 4],
 }

@@ -1,6 +1,6 @@
-//! Finds the best quadrilateral around a plane's mask whose sides run to the two vanishing points (§5.3). In plane
-//! coordinates it is a rectangle on the camera's side of the horizon. Far parts of the plane, which would have to be
-//! magnified too much, do not count as part of the mask.
+//! Finds the best quadrilateral around a plane's mask (§5.3). Its sides run to the vanishing points of the plane's two
+//! axes, so it is a rectangle in plane coordinates. It lies on the camera's side of the horizon. Far parts of the
+//! plane, which would have to be magnified too much, do not count as part of the mask.
 
 use super::plane::Plane;
 use crate::error::{Error, Result};
@@ -23,8 +23,8 @@ pub struct Rectangle {
     pub finest_pixel_side: f64,
 }
 
-/// Finds the rectangle with the highest score: the number of its cells that the mask marks and the photo resolves well
-/// enough, minus `HOLE` times the number of its other cells. `max_magnification` is relative to the best-resolved part
+/// Finds the rectangle with the highest score: the number of its cells that the mask marks and whose magnification is
+/// allowed, minus `HOLE` times the number of its other cells. `max_magnification` is relative to the best-resolved part
 /// of the plane.
 pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
     // Keep the pixels on the camera's side of the horizon, each with the size of the square that it covers on the

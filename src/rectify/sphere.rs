@@ -28,8 +28,8 @@ const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
 /// Number of segments that count as one independent observation. The errors of segments are correlated if the segments
-/// are the two sides of a bar, pieces of one edge, or edges in a row of equal objects. Calibrated on photos with
-/// exactly known cameras, like the next constants. [bench vp]
+/// are the two sides of a bar, pieces of one edge, or edges in a row of equal objects. This value and the values down
+/// to [`STRAIGHTNESS`] are calibrated on photos with exactly known cameras. [bench vp]
 const PER_OBSERVATION: f64 = 5.0;
 
 /// Settings of the estimate of the endpoint noise. The biweight cuts off residuals beyond its limit, so the remaining
@@ -71,7 +71,7 @@ impl Frame {
         segments.iter().enumerate().filter_map(|(i, s)| prepare(s).map(|line| (i, WeightedLine::new(line)))).collect()
     }
 
-    /// Converts a homogeneous point of the frame to homogeneous pixels of unit length.
+    /// Converts a homogeneous point of the frame to homogeneous pixel coordinates, normalised to unit length.
     pub fn to_pixels(&self, p: DVec3) -> DVec3 {
         // Treat a third coordinate that is only rounding error as a point at infinity.
         let w = if p.z.abs() <= 1e-13 * p.truncate().length() { 0.0 } else { p.z };
@@ -294,8 +294,8 @@ fn endpoint_noise(rows: &[Row]) -> f64 {
 }
 
 /// Computes the covariance by the sandwich formula `A⁻¹ B A⁻¹` of an M-estimator (Huber, "Robust Statistics", 1981,
-/// §6.3), in the tangent plane: `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, where `c` is a line's base weight and `g`
-/// its gradient.
+/// §6.3), in the tangent plane: `A = Σ c ψ′ g gᵀ` and `B = Σ c² ψ² g gᵀ`, where `c` is a line's base weight, `g` its
+/// gradient, and `ψ` the product of residual and biweight.
 ///
 /// ψ′ and ψ² are replaced by their expectations under independent endpoint noise of the estimated size. Their sample
 /// values would vary too much if there are few lines, and lines of large weight have small residuals merely because

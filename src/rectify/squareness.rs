@@ -22,8 +22,8 @@ pub struct Squareness {
 struct Pair {
     /// Index of the third direction, which is not part of the pair.
     beside: usize,
-    /// Cosine of the angle between the two directions, and its derivative with respect to the logarithm of the focal
-    /// length.
+    /// Cosine of the angle between the two directions (`cosine`), its derivative with respect to the logarithm of the
+    /// focal length (`slope`), and its variance (`variance`).
     cosine: f64,
     slope: f64,
     variance: f64,

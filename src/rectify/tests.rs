@@ -176,7 +176,7 @@ fn the_stated_error_of_a_focal_length_from_lines_is_its_true_error() {
 
 #[test]
 fn one_family_gives_its_point_wherever_it_is() {
-    // Put the point inside the image, on its border, and ever farther outside.
+    // Put the vanishing point inside the image, on its border, and ever farther outside.
     let border = 400.0 / 0.4f64.cos();
     for far in [300.0, border, 5e3, 1e6, 1e12, f64::INFINITY] {
         let along = DVec2::from_angle(0.4);
@@ -460,7 +460,8 @@ fn images_without_lines_are_refused_and_never_crash() {
             let error = find_view(image, &params, Monitor::default().job()).unwrap_err();
             assert_eq!(error.kind, ErrorKind::Degenerate);
         }
-        // Images of noise, of binary noise, with all but a corner saturated, and with every third pixel not finite.
+        // Test four images: noise, noise rounded to 0 or 1, white with a black corner, and noise in which every third
+        // pixel is not finite.
         let odd = |x: usize, y: usize| if (x + y) % 3 == 0 { f32::NAN } else { noise(x, y) };
         for image in [
             Image::from_fn(200, 150, |x, y| [noise(x, y); 3]).unwrap(),
@@ -517,9 +518,8 @@ fn skewed(truth: &Perspective, skew: f64, tall: f64, noise: f64, seed: u64) -> V
 
 #[test]
 fn right_angles_are_measured_within_the_stated_error() {
-    // If no focal length is given, the reported errors are conservative. An error of one direction affects both an
-    // angle and the focal length at which the angle is evaluated; these effects are correlated, which the estimate
-    // ignores.
+    // If no focal length is given, the reported errors are too large. An error of one direction affects both an angle
+    // and the focal length at which the angle is evaluated. The estimate ignores that these two effects are correlated.
     for (focal, range) in [(Some(700.0), 0.6..1.4), (None, 0.2..1.4)] {
         let (mut sum, mut count) = (0.0, 0.0);
         for seed in 0..60 {

@@ -21,7 +21,8 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     job.check()?;
     job.report(0.1);
 
-    // The best-resolved part of the photo determines the pixel size, unless the image would become too large.
+    // The best-resolved part of the plane determines the pixel size, unless the image would become larger than
+    // `max_side`.
     let size = rectangle.high - rectangle.low;
     let pixel_size = rectangle.finest_pixel_side.max(size.max_element() / params.max_side as f64);
     let side = |length: f64| ((length / pixel_size).round() as usize).clamp(1, params.max_side);
@@ -105,7 +106,7 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
         }
         aspect_variance += ((aspect(corners) - aspect(&still)) / SMALL).powi(2);
     }
-    // A confidence of one half corresponds to an uncertainty of 10 % in the aspect ratio. [convention]
+    // A confidence of one half corresponds to a relative standard deviation of 10 % of the aspect ratio. [convention]
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }
 }
 

@@ -32,7 +32,7 @@ pub struct VanishingPoint {
     /// Number of segments that run to the point; 0 if the point was derived from the other points or from a
     /// convention.
     pub support: usize,
-    /// Standard deviation of the point's direction in camera space, in radians.
+    /// Root mean square, in radians, of the angle between the point's direction in camera space and the true direction.
     pub error: f64,
     /// Covariance of the point's direction in camera space, in radians squared; its trace is the square of `error`.
     /// For a point far outside the image, the uncertainty along the lines is larger than the uncertainty across them.
@@ -42,9 +42,9 @@ pub struct VanishingPoint {
 /// The vanishing points of a set of segments.
 #[derive(Clone, Debug)]
 pub struct Vanishing {
-    /// The first three points found come before any further points. The Manhattan search finds the points of the (up to
-    /// three) orthogonal directions first. The first three points and the further points are each sorted by decreasing
-    /// total weight of the lines that run to a point.
+    /// The vanishing points in two groups: the first three points found, then any further points. The Manhattan search
+    /// finds the points of the orthogonal directions, at most three, first. Each group is sorted by decreasing total
+    /// weight of the lines that run to a point.
     pub points: Vec<VanishingPoint>,
     /// For each segment, the index of the point it runs to; `None` if it runs to no point.
     pub members: Vec<Option<usize>>,
@@ -53,8 +53,9 @@ pub struct Vanishing {
     pub(super) free: Vec<Refined>,
     /// Focal length, in pixels, with which the directions were estimated: the given one, if any.
     ///
-    /// Otherwise, the Manhattan search takes the focal length for which the points are most nearly orthogonal, a weak
-    /// guess if only one point is finite. The successive search takes `manhattan::USUAL_FOCAL`.
+    /// Without a given focal length, the Manhattan search takes the one for which the directions are most nearly
+    /// orthogonal; it is a weak guess if only one point is finite. The successive search takes
+    /// `manhattan::USUAL_FOCAL`.
     pub focal: f64,
 }
 

@@ -7,10 +7,9 @@ use crate::warning::{Code, Warning, percent};
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Relative standard deviation of the focal length that the warning about an assumed focal length reports as its limit.
-/// This value results if the lines and the prior are equally precise. If the lines are less precise than the prior, the
-/// standard deviation is larger.
-/// [convention]
+/// Limit of the warning about an assumed focal length, as a relative standard deviation of the focal length. The
+/// standard deviation has this value if the lines and the prior are equally precise. If the lines are less precise than
+/// the prior, the standard deviation is larger. [convention]
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
 /// A room axis whose standard deviation is above this, in radians, raises a warning. [judged on 38 photos]
 pub const MAX_DIRECTION_ERROR: f64 = 0.035;
@@ -35,7 +34,7 @@ const MAX_MAGNIFIED: f64 = 0.8;
 /// A plane raises a warning if the median of `sin a` over the plane is below this, where `a` is the angle between the
 /// plane and the viewing ray. [judged on 38 photos]
 const MIN_INCIDENCE: f64 = 0.1;
-/// Number of pixels sampled along each side of the unwarped plane.
+/// Maximum number of pixels sampled along each side of the unwarped plane.
 const GRID: usize = 96;
 
 impl View {

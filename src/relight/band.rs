@@ -41,7 +41,7 @@ impl Pyramid {
     }
 
     /// Looks up the texture at `uv`, filtered to texels with `2^level` times the side of the original texels. `level`
-    /// may be fractional.
+    /// may be fractional; it is clamped to the levels of the pyramid.
     pub fn look_up(&self, uv: DVec2, level: f64) -> TextureSample {
         let last = (self.levels.len() - 1) as f64;
         let clamped = level.clamp(0.0, last);

@@ -59,7 +59,7 @@ fn cell(uv: Vec2, width: usize, height: usize) -> usize {
     at(uv.y, height) * width + at(uv.x, width)
 }
 
-/// Adds the contributions of one path to the bins.
+/// Adds the contributions of one path to the bins (`sums`). Light without a bin is added to `others`.
 pub(super) struct Sorter<'a> {
     bins: &'a Bins<'a>,
     factor: Vec3,

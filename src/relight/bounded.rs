@@ -211,7 +211,8 @@ mod tests {
         // One equation in one unknown: a x = b, slightly regularised towards p.
         let x = solve(1, &[2.0], &[6.0], 1e-9, &[0.0], &[FREE]);
         assert!((x[0] - 6.0 * 2.0 / (4.0 + 4e-9)).abs() < 1e-12);
-        // The preferred values add up to 3. The remaining 3 is divided equally among identical unknowns.
+        // The preferred values add up to 3 of the required 6. The remaining 3 is divided equally among identical
+        // unknowns.
         let x = solve(1, &[1.0, 1.0, 1.0], &[6.0], 1e-9, &[0.0, 0.0, 3.0], &[FREE; 3]);
         assert!((x[0] - 1.0).abs() < 1e-7 && (x[1] - 1.0).abs() < 1e-7 && (x[2] - 4.0).abs() < 1e-7, "{x:?}");
         // The first unknown is bounded by 1, so the second unknown contributes the remaining 5.

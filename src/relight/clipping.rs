@@ -5,8 +5,9 @@
 //!
 //! 1. For each pair of channels, fit a line to the pixels in which both channels are unclipped.
 //! 2. In the other pixels, predict a clipped channel from an unclipped one with this line.
-//! 3. Limit the prediction, because it is an extrapolation. It is at least the clipped value, and at most `r x`, where
-//!    `x` is the value of the unclipped channel and `r` the ratio of the two channels' means in step 1.
+//! 3. Limit the prediction, because it is an extrapolation. It is at least the clipped value. It exceeds this value
+//!    only up to `r x`, where `x` is the value of the unclipped channel. `r` is the mean of the clipped channel divided
+//!    by the mean of the unclipped channel, both over the pixels of step 1.
 //!
 //! If all channels of a pixel are clipped, the pixel keeps its values, which are lower bounds.
 
@@ -19,7 +20,7 @@ const CLIPPED: f32 = 0.987;
 /// The line between two channels is fitted only if at least this share of the pixels is unclipped in both.
 /// [origin not recorded]
 const MIN_UNCLIPPED_SHARE: f64 = 0.02;
-/// Strength of the regularisation of the fitted line. If the relative standard deviation of the plane's brightness is
+/// Strength of the regularisation of the fitted line. If the relative standard deviation of the predicting channel is
 /// smaller than this, the line runs nearly through black; if it is larger, the line follows the pixels.
 /// [origin not recorded]
 const RIDGE: f64 = 0.05;
@@ -47,7 +48,7 @@ pub(super) fn mean(pixels: impl Iterator<Item = Vec3> + Clone, one_plane: bool) 
         let mask = clipped(rgb);
         let mut colour = rgb.as_dvec3();
         for y in (0..3).filter(|c| mask.test(*c)) {
-            // Use the brightest unclipped channel: it predicts best.
+            // Predict from the brightest unclipped channel that has a line to this channel.
             let known = (0..3).filter(|&x| !mask.test(x)).filter_map(|x| Some((rgb[x], lines[y][x]?)));
             match known.max_by(|a, b| a.0.total_cmp(&b.0)) {
                 Some((value, line)) => colour[y] = colour[y].max(line.at(value.into())),
@@ -78,12 +79,12 @@ struct Moments {
     xy: f64,
 }
 
-/// The line that predicts one channel from another: `start + slope * x`, at most `ratio * x`.
+/// The line that predicts channel y from the value x of another channel: `start + slope * x`, but at most `ratio * x`.
 #[derive(Clone, Copy)]
 struct Line {
     start: f64,
     slope: f64,
-    /// Ratio of the means of the two channels.
+    /// Mean of channel y divided by the mean of channel x, over the pixels to which the line is fitted.
     ratio: f64,
 }
 

@@ -19,8 +19,8 @@ const MAX_HALVINGS: usize = 30;
 /// A step is accepted if the function decreases by at least this share of the linear prediction (Armijo condition).
 /// [convention]
 const ARMIJO: f64 = 1e-4;
-/// Length of the first step, in the units of the variables. The line search shortens it, and the second step has the
-/// length of the quasi-Newton direction: with any value from 0.025 to 0.1, Rosenbrock's valley takes 43 or 44 steps.
+/// Length of steps along the steepest descent, such as the first step, in the units of the variables. The line search
+/// shortens these steps if necessary. With any value from 0.025 to 0.1, Rosenbrock's valley takes 43 or 44 steps.
 /// [convention]
 const FIRST_STEP: f64 = 0.05;
 /// The search ends when a step decreases the function by at most this share of the function's value. BFGS converges
@@ -49,7 +49,7 @@ impl<const N: usize> Bounds<N> {
         })
     }
 
-    /// Whether a variable may move along the negative gradient.
+    /// Whether a variable may move against the gradient without leaving its bounds.
     fn is_free(&self, i: usize, x: &[f64; N], gradient: &[f64; N]) -> bool {
         let held = x[i] <= self.min[i] && gradient[i] >= 0.0 || x[i] >= self.max[i] && gradient[i] <= 0.0;
         self.is_open(i) || self.min[i] < self.max[i] && !held
@@ -107,7 +107,8 @@ pub(super) fn run<const N: usize>(
     x
 }
 
-/// BFGS update of the inverse Hessian from a step and the change of the gradient.
+/// Updates the inverse Hessian from a step and the change of the gradient (BFGS). Leaves it unchanged unless the
+/// function has positive curvature along the step, beyond rounding.
 fn update<const N: usize>(inverse: &mut Option<[[f64; N]; N]>, step_taken: &[f64; N], gradient_change: &[f64; N]) {
     let curvature = dot(step_taken, gradient_change);
     if !(curvature > 1e-12 * dot(step_taken, step_taken).sqrt() * dot(gradient_change, gradient_change).sqrt()) {

@@ -16,7 +16,7 @@ pub struct EmissionLamps {
     division: Division,
     /// Centre of each lamp: texture coordinates (with z = 0) for regions of a texture, a position in metres otherwise.
     centres: Vec<Vec3>,
-    /// Area of each lamp in texels or m²; for punctual lights, a number that identifies their kind.
+    /// Area of each lamp in texels or m²; for a punctual light, a number that identifies its kind.
     sizes: Vec<f32>,
 }
 
@@ -185,8 +185,8 @@ impl EmissionLamps {
         Ok(scaled)
     }
 
-    /// Groups lamps in rows: successive centres along an axis that differ by at most `tolerance` belong to one row.
-    /// Returns the group of each lamp and the number of groups, numbered along the axis.
+    /// Groups lamps in rows: successive centres along an axis that differ by at most `tolerance`, in the unit of the
+    /// centres, belong to one row. Returns the group of each lamp and the number of groups, numbered along the axis.
     pub fn rows(&self, axis: usize, tolerance: f32) -> (Vec<u32>, usize) {
         self.chained(|i| self.centres[i][axis.min(2)], |a, b| b - a > tolerance)
     }

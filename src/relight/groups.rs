@@ -1,8 +1,9 @@
 //! Solves for the powers of groups of lamps that best meet several lighting goals, within bounds.
 //!
-//! Radiance is linear in the powers `x`. The best powers minimise the sum `Σ w² ((b + Σ r x − t) / s)²` over goals and
-//! channels ("Painting with light", Schoeneman et al. 1993). For each goal, `w` is the weight, `b` the radiance from
-//! all other light, `r` the response to a group, `t` the target and `s` the target's brightness.
+//! Radiance is linear in the powers `x`. The best powers minimise `Σ w² ((b + Σ r x − t) / s)²` ("Painting with light",
+//! Schoeneman et al. 1993). The outer sum is over goals and channels, the inner sum over groups. For each goal, `w` is
+//! the weight, `b` the radiance from all other light, `r` the response to a group, `t` the target and `s` the brightest
+//! channel of the target.
 //!
 //! A small regularisation towards equal powers is added, because the goals may leave some powers open. With one group
 //! and one goal, the solution is the closed form of [`super::run`].
@@ -50,8 +51,9 @@ pub struct GroupParams {
     /// Groups get the levels that together best meet the goals ([`super::steps`]). The confidence intervals of the
     /// powers then include the difference from the continuous powers.
     pub levels: Vec<f64>,
-    /// Weight of the regularisation towards equal powers, in `[1e-9, 1e3]`: with a small weight the powers meet the
-    /// goals, with a large weight they stay equal.
+    /// Weight of the regularisation towards equal powers, relative to the mean squared norm of the rows of the least
+    /// squares problem; in `[1e-9, 1e3]`. With a small weight the powers meet the goals, with a large weight they stay
+    /// equal.
     pub regularisation: f64,
     /// A goal counts as met if it misses its target by at most this share of the target's brightest channel, plus the
     /// half-width of the 95 % confidence interval; in `[1e-6, 1]`.
@@ -293,7 +295,7 @@ impl System<'_> {
         self.by_channels(round).map_or_else(|_| whole.to_vec(), |powers| powers.colours())
     }
 
-    /// Returns the maximum power of each group.
+    /// Returns the maximum power of each group; infinite if no bounds are given.
     fn upper(&self) -> Vec<f64> {
         if self.params.max_scale.is_empty() {
             vec![f64::INFINITY; self.responses.lamps()]

@@ -69,8 +69,8 @@ pub struct Importance {
 pub struct Response {
     /// Mean radiance of the target per channel, in the unit of the texture's values (usually cd/m²).
     pub light: Estimate,
-    /// The response computed with cells of twice the side, minus `light.mean`. Where the importance is smooth, it is
-    /// three times the error that the size of the cells causes, plus noise.
+    /// The response computed with cells of twice the side, minus `light.mean`. Where the importance is smooth, this
+    /// difference is three times the error that the size of the cells causes, plus noise.
     pub resolution_difference: DVec3,
     measured: Vec<DVec3>,
 }
@@ -235,7 +235,7 @@ impl Importance {
         Ok(rows.into_iter().flatten().collect())
     }
 
-    /// Computes the response with 2 × 2 cells merged into one, for the estimate of the error.
+    /// Computes the response with 2 × 2 cells merged into one, to estimate the error that the size of the cells causes.
     fn coarse(&self, emission: &[DVec3]) -> DVec3 {
         let mut total = DVec3::ZERO;
         for y in (0..self.height).step_by(2) {

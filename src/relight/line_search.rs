@@ -27,7 +27,8 @@ impl Slope {
         }
     }
 
-    /// Returns the position at which the derivative is zero, or the nearer end of the step if there is no zero.
+    /// Returns the position at which the derivative is zero. If the derivative has no zero on the step, returns the end
+    /// at which the function is smaller: 0 if the derivative is positive, 1 if it is negative.
     pub fn zero(mut self) -> f64 {
         if self.start >= 0.0 {
             return 0.0;

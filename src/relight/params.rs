@@ -18,9 +18,10 @@ pub enum Quantity {
 pub enum Fit {
     /// The mean over the points equals the target colour, as in the paper.
     Mean,
-    /// The sum of the squared differences at the points is minimal, as in the limit of gradient descent on texels
-    /// (Lipp et al. 2024). Bright points count more: without other light, the solution is dimmer by the factor
-    /// `1 / (1 + CV²)`, where CV is the coefficient of variation of the response over the target.
+    /// The sum over the points of the squared difference from the target colour is minimal, as when gradient descent on
+    /// texels has converged (Lipp et al. 2024). Bright points count more: without other light, the solution is dimmer
+    /// than with [`Fit::Mean`] by the factor `1 / (1 + CV²)`, where CV is the coefficient of variation of the response
+    /// over the target.
     LeastSquares,
 }
 
@@ -42,8 +43,8 @@ pub struct Params {
     /// How the light at the points of the target is fitted. Only [`super::run`] uses `fit` and `constraint`.
     pub fit: Fit,
     /// Whether the target of each channel is exact or a limit; clipped pixels of a photo give lower limits. A channel
-    /// with a limit gets the mean scale of the exact channels if this scale satisfies the limit, and otherwise the
-    /// scale that just reaches the limit.
+    /// with a limit gets the mean scale of the exact channels if this scale satisfies the limit. Otherwise, or if no
+    /// exact channel meets its target, it gets the scale that just reaches the limit.
     pub constraint: [Constraint; 3],
     /// Maximum number of paths, in `[1024, 1 << 30]`.
     pub paths: u32,

@@ -34,7 +34,7 @@ pub struct PhotoColour {
 const HALO: f32 = 0.01;
 /// A photo with a value above this has values beyond white (1), so it is not clipped at white. [rounding]
 const WHITE: f32 = 1.001;
-/// If a channel's value is unknown in more than this share of the pixels, its target is a lower bound.
+/// If a channel's value is unknown in more than this share of the pixels, the target of this channel is a lower bound.
 /// [convention]
 const MOSTLY: f64 = 0.5;
 
@@ -67,7 +67,8 @@ pub fn photo_colour(
     })
 }
 
-/// Returns the mean colour of the selected pixels. Pixels with NaN or infinite values are ignored.
+/// Returns the mean colour of the selected pixels. Pixels with NaN or infinite values are ignored. `None` if no pixel
+/// is left.
 fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bool) -> Option<PhotoColour> {
     let colours = photo.data.chunks_exact(photo.channels).map(|p| Vec3::new(p[0], p[1], p[2])).enumerate();
     let selected = &selected;

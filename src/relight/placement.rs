@@ -1,9 +1,9 @@
 //! Finds the best placement of a texture: its offset, scale and rotation on the surface, by gradient descent on the
 //! importance map.
 //!
-//! The target's light under a placed texture is the dot product of the map and the texture, looked up at the centres
-//! of the map's cells. To make it differentiable, the look-ups are band-limited to the size of a cell
-//! ([`super::band`]). As textures repeat, there are many local optima. The search has three steps:
+//! The target's light under a placed texture is the dot product of the map and the texture, looked up at the centres of
+//! the map's cells. To make this light differentiable in the placement, the look-ups are band-limited to the size of a
+//! cell ([`super::band`]). As textures repeat, there are many local optima. The search has three steps:
 //!
 //! 1. Evaluate many evenly distributed starting points, and the current placement of the texture ([`Pose::IDENTITY`]).
 //! 2. Descend from the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7).
@@ -230,7 +230,7 @@ impl Search {
         let rotation = DMat2::from_angle(pose.rotation);
         let Cells { width, height, importance } = &self.cells;
         let cell = DVec2::new(1.0 / *width as f64, 1.0 / *height as f64);
-        // Choose the pyramid level at which a cell covers one texel.
+        // Choose the pyramid level at which a cell covers the area of one texel.
         let texels = pose.scale.element_product() * (cell * self.texels).element_product();
         let level = 0.5 * texels.log2();
         let by_scale = DVec2::splat(0.5 / std::f64::consts::LN_2) / pose.scale;

@@ -33,7 +33,8 @@ pub struct Goal<'a> {
     /// Whether the target of each channel is exact or a limit. With [`Aspect::Luminance`], the three entries must be
     /// equal.
     pub constraint: [Constraint; 3],
-    /// Weight of this goal's relative error compared with other goals, ≥ 0.
+    /// Weight of the goal's error, ≥ 0, in comparison with other goals. The error is relative to the brightest channel
+    /// of the target; for a black target, to the brightest channel under all lamps.
     pub weight: f64,
 }
 

@@ -78,8 +78,8 @@ impl Problem<'_> {
             }
             let (t, slope) = self.line_search(lambda, &x, &next);
             x.iter_mut().zip(&next).for_each(|(x, n)| *x += t * (n - *x));
-            // Stop when the function no longer decreases. Otherwise a term at its limit could change its state by
-            // rounding in every step.
+            // Stop when the function no longer decreases. Without this condition, a term at its limit could change its
+            // state by rounding in every step, without end.
             if -slope * t <= ROUNDING * dot(self.right, self.right) {
                 return Ok(x);
             }

@@ -57,7 +57,8 @@ pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3
     let scale = answers.each_ref().map(|a| if a.status == TargetStatus::Dark { neutral } else { a.scale });
     let response = DVec3::from(channels.each_ref().map(|c| mean(&c.response)));
     let background = DVec3::from(channels.each_ref().map(|c| mean(&c.background)));
-    // The achieved light: the target in exact channels, the scaled light in channels with limits.
+    // The achieved light: the target in channels with exact targets, the background plus the scaled response in
+    // channels with limits.
     let light = background + DVec3::from(scale) * response;
     let seen =
         DVec3::from(std::array::from_fn(|c| if constraint[c] == Constraint::Exactly { target[c] } else { light[c] }));
@@ -104,7 +105,7 @@ fn keep_sides(answers: &mut [Answer; 3], constraint: [Constraint; 3]) {
 
 impl Channel {
     /// Computes the scale from the target `t`, background `b` and response `r`. `E[·]` is the mean over the target's
-    /// points; the argument `mean` averages it over batches.
+    /// points. The argument `mean` averages the batches' values of `E[·]`.
     ///
     /// - Fit of the mean: `(t - E[b]) / E[r]`.
     /// - Least squares: `(t E[r] - E[b r]) / E[r²]`.
@@ -115,7 +116,8 @@ impl Channel {
         }
     }
 
-    /// Solves for the scale, with its confidence interval by the jackknife.
+    /// Solves for the scale, with its confidence interval by the jackknife. The scale is 0 if the response does not
+    /// exceed three of its standard errors (`Dark`), or if other light alone exceeds the target (`TooBright`).
     fn solve(&self, target: f64) -> Answer {
         let response = mean(&self.response);
         let noise = standard_error(&self.response);

@@ -1,5 +1,5 @@
 //! Chooses a camera for a scene that has no camera. The candidates stand near the corners of a given surface, such as
-//! the ceiling, on its lit side. The chosen camera has the most open view of all candidates.
+//! the ceiling, on its lit side. The chosen candidate sees farthest, on average over its image.
 
 use super::world::World;
 use crate::scene::surface::Surface;
@@ -8,16 +8,17 @@ use glam::{Vec2, Vec3};
 
 /// Vertical angle of view in radians. [convention]
 const FOV_Y: f32 = 0.9;
-/// Distances of the candidate cameras from a corner of the surface, as shares of the surface's sides. [convention]
+/// Distances of the candidate cameras from the two sides of the surface that meet at a corner. Each distance is a share
+/// of the side across which it is measured: 0.08 of a 10 m long ceiling is 0.8 m. [convention]
 const INSETS: [f32; 2] = [0.08, 0.2];
 /// Distances of the candidate cameras from the surface, as shares of the depth of the scene below the surface.
 /// [convention]
 const HEIGHTS: [f32; 2] = [0.35, 0.5];
-/// Numbers of rays, horizontally and vertically, with which the mean line of sight of a camera is measured.
+/// Numbers of columns and rows of rays whose mean length is the score of a camera.
 const RAYS: [usize; 2] = [12, 8];
 
-/// Returns the candidate camera with the longest mean line of sight. Lines of sight longer than the surface's diagonal
-/// count as this diagonal.
+/// Returns the candidate camera whose rays have the largest mean length. A ray ends at its first hit; its length is at
+/// most the diagonal of the surface.
 pub fn overview_camera(world: &World, surface: &Surface) -> Camera {
     let depth = depth_below(world.scene(), surface);
     let mut best = (f32::NEG_INFINITY, None);
@@ -35,8 +36,8 @@ pub fn overview_camera(world: &World, surface: &Surface) -> Camera {
     best.1.unwrap_or_else(|| candidate(surface, 0, INSETS[0], HEIGHTS[0] * depth))
 }
 
-/// Returns the distance from the surface to the farthest vertex of the scene on the lit side of the surface. If there
-/// is no such vertex, returns half of the surface's longer side.
+/// Returns the largest distance in metres of a vertex from the plane of the surface, on the lit side. If no vertex lies
+/// on that side, returns half of the surface's longer side.
 fn depth_below(scene: &Scene, surface: &Surface) -> f32 {
     let points = scene.meshes.iter().flat_map(|m| &m.positions);
     let depth = points.map(|p| (*p - surface.origin).dot(surface.normal)).fold(0.0, f32::max);
@@ -63,7 +64,7 @@ fn openness(world: &World, camera: &Camera, cap: f32) -> f32 {
         let y = ((i / RAYS[0]) as f32 + 0.5) / RAYS[1] as f32;
         let direction: Vec3 = camera.direction(x, y, 16.0 / 9.0).normalize();
         let hit = world.accel().closest(&world.ray(camera.position, direction), |_| true);
-        // A ray that leaves the scene counts as half the maximum length.
+        // Count a ray that hits nothing as half of `cap`, the maximum length.
         sum += hit.map_or(cap / 2.0, |h| h.t.min(cap));
     }
     sum

@@ -19,8 +19,8 @@ pub struct Params {
     /// Stop when the error of each tile of 8 × 8 pixels falls to this value; 0 = never. For example, 0.1 means "within
     /// 10 % of the value, 19 times out of 20".
     ///
-    /// - The error of a pixel is the half-width of the 95 % confidence interval of its luminance, divided by its
-    ///   luminance. For pixels darker than a tenth of the image's mean radiance, it is divided by that tenth instead.
+    /// - The error of a pixel is h / max(L, m / 10). L is the luminance of the pixel, and h is the half-width of the
+    ///   95 % confidence interval of L. m is the mean radiance of the image over all pixels and channels.
     /// - The error of a tile is the root mean square of the errors of its pixels.
     /// - A tile gets at most 64 times `samples` paths per pixel, even if it then misses the target.
     ///

@@ -19,8 +19,9 @@ use glam::{Vec2, Vec3};
 /// First bounce at which Russian roulette may end a path. [convention]
 const ROULETTE_START: u32 = 2;
 /// A path survives with the largest probability, [`MAX_SURVIVAL`], if its expected contribution is at least about this
-/// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value.
-/// [origin not recorded]
+/// share of the pixel's estimate. In rooms, the measured product of time and variance is smallest near this value. With
+/// a larger value, more paths end early and the variance grows; with a smaller one, the time grows. Roulette is
+/// unbiased: any positive value gives the same expected image. [convention]
 const CERTAIN_SHARE: f32 = 0.5;
 /// Largest survival probability, so that a path between white walls ends eventually. For walls of albedo a, the
 /// variance is infinite unless the survival probability is at least a². White standards of reflectance have a = 0.99
@@ -44,7 +45,8 @@ pub trait Observer {
     /// the sampled direction ([`Lobes`]).
     fn scatter(&mut self, _mesh: u32, _kind: ScatterKind, _lobes: Lobes) {}
 
-    /// Returns a list to be filled with the panes between a vertex and its light sample, if the observer needs them.
+    /// Returns a list to be filled with the panes between a vertex and its light sample; `None`, the default, if the
+    /// observer does not need them.
     fn panes(&mut self) -> Option<&mut Vec<Pane>> {
         None
     }
@@ -123,8 +125,8 @@ pub struct PathLength {
     /// Largest number of bounces of a path.
     pub max_bounces: u32,
     /// Factor for Russian roulette: the product of this factor and the throughput of a path is the path's expected
-    /// contribution, as a share of the pixel's estimate. `None` until the first bounce; the factor then becomes the
-    /// reciprocal of the throughput after this bounce.
+    /// contribution, as a share of the pixel's estimate. If the factor is `None` at the start of a path, it becomes the
+    /// reciprocal of the throughput after the first bounce.
     pub roulette_weight: Option<Vec3>,
 }
 
@@ -206,8 +208,8 @@ pub(super) fn continue_path<O: Observer>(
         return None;
     }
     // Play Russian roulette on the expected contribution (Vorba and Křivánek 2016, "Adjoint-driven Russian roulette
-    // and splitting in light transport simulation"). The single value `roulette_weight` replaces their estimate of the
-    // radiance yet to be found.
+    // and splitting in light transport simulation"). The paper estimates the radiance that arrives at each vertex; here
+    // one `roulette_weight` per path takes the place of these estimates.
     let mut throughput = segment.throughput;
     if bounce >= ROULETTE_START
         && let Some(roulette_weight) = length.roulette_weight
@@ -328,7 +330,8 @@ pub(super) fn connection_weight(
     transmittance * (weight / light.pdf)
 }
 
-/// Adds the emission of a surface that a BSDF sample has hit, with the MIS weight against light sampling.
+/// Adds the emission of the surface that `segment` has hit. If a light sample could also have found this light, the
+/// emission has the MIS weight against light sampling; otherwise its weight is 1.
 fn add_emission<O: Observer>(world: &World, segment: &PathSegment, vertex: &Vertex, observer: &mut O) {
     let Some(index) = world.emitter_of(vertex.id) else { return };
     let lights = world.lights();
@@ -349,7 +352,8 @@ fn add_emission<O: Observer>(world: &World, segment: &PathSegment, vertex: &Vert
     observer.add(lights.emitters.source(index, uv), segment.throughput * weight, emission, Strategy::BsdfSample);
 }
 
-/// Adds the environment's radiance along a BSDF sample, with the MIS weight against light sampling.
+/// Adds the environment's radiance along a segment without a hit. The radiance has the MIS weight against light
+/// sampling, or the weight 1 after the eye or a mirror.
 fn add_environment<O: Observer>(world: &World, segment: &PathSegment, observer: &mut O) {
     let Some(environment) = world.environment() else { return };
     let emission = environment::radiance(environment, segment.ray.direction);
@@ -369,7 +373,7 @@ pub(super) fn reciprocal(v: Vec3) -> Vec3 {
 /// Returns the MIS weight of a sample by the power heuristic with exponent 2. `own` is the pdf with which the sample
 /// was drawn, `other` the pdf with which the other strategy would draw it.
 fn power_heuristic(own: f32, other: f32) -> f32 {
-    // Compute the ratio first, so that no square overflows.
+    // Square the ratio of the pdfs, because the squares of the pdfs themselves might overflow.
     if own <= 0.0 {
         return 0.0;
     }

@@ -12,8 +12,8 @@ use crate::job::Job;
 /// Surface attributes that guide the filter.
 const GUIDES: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Position];
 
-/// Returns a copy of the parameters. If a preview is requested, the guide images of the filter are added after the
-/// requested outputs.
+/// Returns a copy of the parameters. If a preview is requested, the copy also requests the guide images of the filter.
+/// Those that the caller has not requested come after the requested outputs.
 pub fn guided(params: &Params) -> Params {
     let mut guided = params.clone();
     if params.preview > 0.0 {
@@ -23,8 +23,8 @@ pub fn guided(params: &Params) -> Params {
     guided
 }
 
-/// Adds the preview to a film that was rendered with the [`guided`] parameters. Removes the guide images that were not
-/// requested.
+/// Adds the preview, if one is requested, to a film rendered with the [`guided`] parameters. Then removes the guide
+/// images that the caller has not requested.
 pub fn add_preview(film: &mut Film, accumulator: &Accumulator, params: &Params, job: Job) -> Result<()> {
     if params.preview > 0.0 {
         let guide = |aov: Aov| {

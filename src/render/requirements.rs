@@ -3,7 +3,8 @@
 //!
 //! The analysis multiplies each factor of a material with the smallest and the largest texel of the factor's texture.
 //! Only materials of meshes with triangles count. Tracing skips features that cannot occur, which changes no estimate.
-//! The number of bounces that matter is reported, but limits no render, since paths end by Russian roulette alone.
+//! The number of bounces that carry nearly all light ([`Requirements::bounces`]) is only reported: paths end by Russian
+//! roulette, not after this number of bounces.
 
 use super::bsdf::{BsdfParams, MIRROR_ROUGHNESS};
 use super::compiled_material::{self, CompiledMaterial};
@@ -53,7 +54,7 @@ pub struct Requirements {
 
 impl Requirements {
     /// Returns the number of bounces after which at most the share `error` of all scattered light remains. `None` if
-    /// the albedos give no bound or `error` is not positive.
+    /// `error` is not positive, or if the largest channel of `albedo` is 1 or more.
     ///
     /// Let `a` be the largest channel of `albedo`: no surface reflects or transmits a larger share of light. So each
     /// bounce carries at most `a` times the flux of the previous bounce, and less in open scenes. The share of the
@@ -344,7 +345,8 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::bsdf_params(material, colour, m, r)))
 }
 
-/// Returns an upper bound, within 0.003, of the albedo with the BSDF parameters `s` over all directions.
+/// Returns the largest albedo, over all directions of incidence, with the BSDF parameters `s`. The error is at most
+/// 0.003, because the albedo is evaluated at a finite number of directions.
 fn albedo_bound(s: &BsdfParams, table: Option<&AlbedoTable>) -> Vec3 {
     // Number of intervals between the cosines at which the albedo is evaluated. With 32 to 128 intervals, the result
     // may be up to 0.003 below the largest albedo, which is less than the error of the table. [convention]

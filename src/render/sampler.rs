@@ -4,8 +4,8 @@
 //! A path draws its numbers in blocks of four; each block is one four-dimensional Sobol' point. Blocks are combined by
 //! padding: each block shuffles and scrambles the same sequence in its own way. Within a block, the samples of a pixel
 //! are stratified: any 2^k successive samples whose first index is a multiple of 2^k fill 2^k strata evenly. The four
-//! numbers of a block are for decisions that act together, such as the choice of a direction and of the light sample at
-//! the next vertex.
+//! numbers of a block are for decisions that should be stratified jointly, such as the choice of a direction and of the
+//! light sample at the next vertex.
 
 use crate::rng;
 
@@ -185,8 +185,8 @@ mod tests {
                 points.iter().for_each(|p| strata[(p.get(d) * 256.0) as usize] += 1);
                 assert!(strata.iter().all(|&c| c == 1), "dimension {d}");
             }
-            // Dimensions 0 and 1 form a (0, 2)-sequence: each elementary interval of area 1/256 contains one of the
-            // first 256 points.
+            // The first two dimensions form a (0, 2)-sequence: each elementary interval of area 1/256 contains one of
+            // the first 256 points.
             for log in 0..=8 {
                 let (nx, ny) = (1usize << log, 256usize >> log);
                 let mut boxes = vec![0; 256];

@@ -1,11 +1,12 @@
 //! Path reuse among neighbouring pixels: the paths of a block of pixels share their secondary vertices.
 //!
 //! A secondary vertex sends light not only to the primary vertex of its own path, but also to the primary vertices of
-//! the neighbouring paths; one more ray per neighbour tests its visibility. The vertex is weighted as if it had been
-//! sampled from the mean of the pdfs of all primary vertices that see it (the balance heuristic of Veach and Guibas
-//! 1995; Bekaert, Sbert and Halton 2002, "Accelerating path tracing by re-using paths"). Estimates remain unbiased.
-//! Each pixel gets indirect light from as many vertices as the block has pixels, at the cost of little more than one
-//! ray per vertex. In return, the errors of the block's pixels are correlated.
+//! the neighbouring paths. One more ray per neighbour tests whether that neighbour's primary vertex sees the secondary
+//! vertex. The secondary vertex is weighted as if it had been sampled from the mean of the pdfs of all primary vertices
+//! that see it (the balance heuristic of Veach and Guibas 1995; Bekaert, Sbert and Halton 2002, "Accelerating path
+//! tracing by re-using paths"). Estimates remain unbiased. Each pixel gets indirect light from as many secondary
+//! vertices as the block has pixels; each further vertex costs the pixel little more than one ray. The disadvantage is
+//! that the errors of the block's pixels are correlated.
 //!
 //! Primary and secondary vertices must be non-specular, since a mirror shows each pixel a different surface. Paths
 //! with other vertices are traced alone.
@@ -19,7 +20,8 @@ use super::world::{Pane, World};
 use crate::accel::Ray;
 use glam::Vec3;
 
-/// Largest number of paths that share vertices, and number of pixels in a block. [origin not recorded]
+/// Largest number of paths that share vertices, and number of pixels in a block: 4 × 2 pixels, which fill a tile in
+/// either orientation. Estimates are unbiased for any number, so the expected image stays the same. [convention]
 pub const MAX_SHARED: usize = 8;
 
 /// An observer that receives several paths with the same camera ray: its own path, and reused subpaths.
@@ -208,8 +210,9 @@ fn trace_primary<'w, W: ReplayObserver>(
 }
 
 /// Traces a path from its primary to its secondary vertex. The observer receives the emission of the secondary surface.
-/// If the secondary vertex cannot be shared, the observer also receives all of its light, and the result is `None`. The
-/// result is also `None` if there is no secondary vertex, if the path ends there, or if the vertex sends no light.
+/// If the secondary vertex cannot be shared, the path is traced to its end for this observer alone, and the result is
+/// `None`. The result is also `None` if there is no secondary vertex, if the path may have only one bounce, or if the
+/// secondary vertex sends no other light.
 fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
     primary: &PrimaryVertex,
@@ -354,7 +357,7 @@ impl Viewers {
             }
             let direction = (surface.position - primary.vertex.position).normalize_or_zero();
             let theirs = surface.normal.dot(direction);
-            // Skip primary vertices on the other side of the secondary surface.
+            // Skip primary vertices on the opposite side of the secondary surface from the path's own primary vertex.
             if !(theirs * cosine > 0.0) {
                 return None;
             }

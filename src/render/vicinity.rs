@@ -24,7 +24,8 @@ const BEYOND: f64 = 1.0 / 128.0;
 /// [judged on 3 scenes]
 const MAX_OUTSIDE: f64 = 1.0 / 16.0;
 /// Triangles count as near if their distance from the box is at most this share of the largest coordinate of the scene.
-/// That distance exceeds the rounding error of a hit, `MARGIN` in `accel/node.rs`. [rounding]
+/// The share is larger than the relative rounding error of a hit, which is the constant `MARGIN` of `accel/node.rs`.
+/// [rounding]
 const MARGIN: f32 = 1.0 / (1 << 16) as f32;
 /// The structure is built only if it has at most `1 / MIN_RATIO` of the triangles of the scene, because a larger
 /// structure saves little time. [judged on 3 scenes]

@@ -28,7 +28,7 @@ pub struct World {
     scene: Arc<Scene>,
     accel: Arc<Accel>,
     /// Acceleration structure of the triangles around the path vertices (see `vicinity`). `None` until a render has
-    /// recorded where its vertices lie, and if such a structure would save little time.
+    /// recorded where its vertices lie. Also `None` if such a structure would save little time.
     vicinity: Option<Arc<Vicinity>>,
     /// Whether renders may build the structure `vicinity`.
     may_build_vicinity: bool,
@@ -60,7 +60,8 @@ pub struct Pane {
     pub triangle: u32,
     /// Share of the light that misses the surface: 1 - opacity.
     pub uncovered: f32,
-    /// Share of the light that the surface transmits, per channel.
+    /// Share of all arriving light that the covered part of the surface transmits, per channel: opacity × transmittance
+    /// of the material.
     pub through: Vec3,
 }
 
@@ -129,8 +130,8 @@ impl World {
         self.any_see_through = true;
     }
 
-    /// Makes renders use one selector for all lights, whether or not the lights reach the surfaces in view. Tests and
-    /// benchmarks use this function to measure how much learning helps.
+    /// Makes renders treat all lights alike, whether or not the lights reach the surfaces in view. Tests and benchmarks
+    /// use this function to measure how much learning helps.
     pub fn disable_learning(&mut self) {
         self.lights.learns = false;
     }
@@ -146,20 +147,22 @@ impl World {
         Ok(Self { lights: self.lights.learning()?, ..self.clone() })
     }
 
-    /// Returns a copy for the next pass. The copy seldom samples the lights that are unlikely to reach the surfaces in
-    /// view, as far as the light samples so far tell. `None` if this copy stays in use (see [`Lights::learned`]).
+    /// Returns a copy for the next pass. The copy seldom samples the lights that, by the light samples so far, are
+    /// unlikely to reach the surfaces in view. `None` if the next pass is to use `self` again (see
+    /// [`Lights::learned`]).
     pub(super) fn learned(&self) -> Result<Option<Self>> {
         self.lights.learned()?.map(|lights| Self { lights, ..self.clone() }.with_vicinity()).transpose()
     }
 
-    /// Ends the learning: returns a copy that keeps what this copy has learned, and learns no more.
+    /// Ends the learning: returns a copy that keeps what `self` has learned, and learns no more.
     pub(super) fn settled(&self) -> Result<Self> {
         let learned = self.lights.learned()?.unwrap_or_else(|| self.lights.clone());
         let world = Self { lights: learned, ..self.clone() }.with_vicinity()?;
         Ok(Self { lights: world.lights.clone().settled(), ..world })
     }
 
-    /// Builds the structure `vicinity` from the vertices recorded so far, unless the present structure still fits them.
+    /// Builds the structure `vicinity` from the vertices recorded so far. Keeps the present one if it still fits these
+    /// vertices, or if no structure may be built.
     fn with_vicinity(self) -> Result<Self> {
         let Some((positions, counted)) = self.lights.positions()?.filter(|_| self.may_build_vicinity) else {
             return Ok(self);
@@ -209,8 +212,9 @@ impl World {
         (position.as_dvec3() + self.centre).as_vec3()
     }
 
-    /// Returns the meshes of the scene, followed by the faces of its lights: one mesh per light, without triangles for
-    /// a light that shines from a point, or no meshes if no light has faces.
+    /// Returns the meshes of the scene, followed by the faces of its lights. There is one mesh of faces per light; it
+    /// has no triangles if the light shines from a point. If no light of the scene has faces, only the meshes of the
+    /// scene are returned.
     pub fn meshes(&self) -> impl Iterator<Item = &Mesh> {
         self.scene.meshes.iter().chain(&*self.faces)
     }

@@ -7,9 +7,10 @@ use crate::image::Image;
 use glam::Vec3;
 
 impl Scene {
-    /// Checks the luminance of every emissive material and of the environment, with their textures, and the intensity
-    /// or illuminance of every punctual light. For a luminaire with faces, also checks their luminance. The error names
-    /// the first material or light that is too bright, its value and the allowed range.
+    /// Checks the luminance of every emissive material and of the environment, at each texel of an emission texture or
+    /// environment image. Checks the intensity or illuminance of every punctual light, and the luminance of the faces
+    /// of every luminaire with faces. The error names the first light or material that is too bright, its value and
+    /// the allowed range.
     pub fn check_brightness(&self) -> Result<()> {
         for (i, material) in self.materials.iter().enumerate() {
             self.check_emission(material).map_err(|e| e.context(format_args!("material {i} ({:?})", material.name)))?;

@@ -29,13 +29,13 @@ pub fn check_light(what: &str, light: Vec3) -> Result<()> {
 pub enum PunctualLight {
     /// Isotropic luminous intensity per channel in cd.
     Point { position: Vec3, intensity: Vec3 },
-    /// `intensity` is the luminous intensity per channel on the axis, in cd. It falls off between the inner and outer
-    /// cone angles (half-angles in radians) as glTF prescribes.
+    /// `intensity` is the luminous intensity per channel on the axis, in cd. Off the axis, the intensity is the same up
+    /// to the inner cone angle, and falls to 0 at the outer one as glTF prescribes. Both are half-angles in radians.
     Spot { position: Vec3, direction: Vec3, intensity: Vec3, inner_angle: f32, outer_angle: f32 },
     /// Illuminance per channel in lux on a surface perpendicular to `direction`, along which the light travels.
     Directional { direction: Vec3, illuminance: Vec3 },
     /// A measured luminaire. It shines from the faces of its luminous opening ([`PunctualLight::opening`]), whose
-    /// centre is `position`.
+    /// centre is `position`. Without an opening, it shines from the point `position`.
     ///
     /// - `axis` is the unit direction of γ = 0, which points down for a hanging luminaire.
     /// - `c0` is the unit direction of C = 0, perpendicular to `axis`. C increases anticlockwise as seen by a viewer

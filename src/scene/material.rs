@@ -31,21 +31,22 @@ pub enum AlphaMode {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     pub name: String,
-    /// Linear reflectance per channel, in `[0, 1]`.
+    /// Linear reflectance per channel, in `[0, 1]`, multiplied by the base colour texture and by the vertex colours.
     pub base_color: Vec3,
     pub base_color_texture: Option<TextureRef>,
-    /// Opacity in `[0, 1]`, multiplied by the alpha of the base colour texture.
+    /// Opacity in `[0, 1]`, multiplied by the alpha of the base colour texture and of the vertex colours.
     pub alpha: f32,
     pub alpha_mode: AlphaMode,
     /// Metalness in `[0, 1]`: 0 for dielectrics, 1 for metals.
     pub metallic: f32,
     /// Perceptual roughness in `[0, 1]`; its square is the width parameter α of the GGX distribution.
     pub roughness: f32,
-    /// The green channel holds the roughness, the blue channel the metalness.
+    /// The green channel is a factor of `roughness`, the blue channel a factor of `metallic`.
     pub metallic_roughness_texture: Option<TextureRef>,
     pub normal_texture: Option<TextureRef>,
     pub normal_scale: f32,
-    /// Emitted luminance per channel in cd/m²: `emissiveFactor × emissiveStrength` of glTF.
+    /// Emitted luminance per channel in cd/m² (`emissiveFactor × emissiveStrength` of glTF), multiplied by the emission
+    /// texture.
     pub emission: Vec3,
     pub emission_texture: Option<TextureRef>,
     /// Whether back faces emit as front faces do. Back faces always reflect and block light as front faces do.

@@ -1,8 +1,9 @@
-//! Finds the place where most of a scene lies. Positions relative to it are small enough for `f32`.
+//! Finds the place where most of a scene lies. Most positions relative to this place are small, so that `f32` stores
+//! them precisely.
 
 use glam::DVec3;
 
-/// The half-extent of [`detail`] is chosen such that this share of the points lies within it. The remaining points are
+/// Share of the points that differ from the median by at most the half-extent of [`detail`]. The remaining points are
 /// ignored, because they may be outliers, such as a few objects left behind at the origin of a national grid.
 /// [convention]
 const NEAR_SHARE: f64 = 0.75;

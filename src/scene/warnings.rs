@@ -13,8 +13,8 @@ pub const MAX_HEIGHT: f64 = 50.0;
 /// in millimetres. [convention]
 pub const MAX_WIDTH: f64 = 2000.0;
 
-/// Extent in metres below which the unit of a scene is probably not the metre: even a table lamp is larger.
-/// [convention]
+/// If the larger of height and width is below this value in metres, the unit of a scene is probably not the metre: even
+/// a table lamp is larger. [convention]
 pub const MIN_EXTENT: f64 = 0.2;
 
 /// Height and width of a typical room in metres. A warning suggests the unit that brings the scene closest to this
@@ -163,7 +163,8 @@ impl Scene {
     }
 }
 
-/// Formats a length with three significant digits and without an exponent: 2700, 4.5, 0.0123.
+/// Formats a length without an exponent, with three significant digits but with all digits before the decimal point:
+/// 2712, 4.56, 0.0123. Zeros at the end of a fraction are omitted: 4.5.
 fn significant(length: f64) -> String {
     let digits = 2.0 - length.log10().floor();
     let text = format!("{length:.*}", digits.clamp(0.0, 12.0) as usize);

@@ -80,7 +80,8 @@ struct Classifier<'a> {
     /// For each class, a quadratic form of all `channels` that is at most 1 inside the ellipsoid around the class's
     /// samples, and larger outside.
     seen: [QuadraticForm; 2],
-    /// Calibration factors on the logit: for pixels like the painted ones, and for pixels unlike them.
+    /// Factors by which the logit is multiplied to give calibrated probabilities. The first applies where `unseen` is 0
+    /// (pixels like the painted ones), the second where it is 1. Between these values, the factor is interpolated.
     calibration: [f32; 2],
 }
 

@@ -9,8 +9,8 @@ use crate::simd::widest;
 /// at least 0.1 along each feature. For comparison, the samples of both classes together have a standard deviation of
 /// at most 1. [origin not recorded]
 const MIN_VARIANCE: f64 = 0.01;
-/// The ellipsoid of a class reaches to this percentile of its samples' distances from the centre, or to one standard
-/// deviation if that is farther.
+/// The ellipsoid of a class reaches to this percentile of its samples' Mahalanobis distances from the centre, but at
+/// least to the distance 1.
 const EXTENT_PERCENTILE: usize = 99;
 
 /// Mean and covariance of a class's samples.

@@ -1,6 +1,6 @@
-//! Restricts the mask of a surface to one face of the room. If the strokes lie on several faces, keeps the connected
-//! parts of the mask that a stroke touches. Without this step, the per-pixel classifier would also mark walls and
-//! floors of the same colour that no stroke has touched.
+//! Restricts the mask of a surface to one face of the room. If the positive strokes lie on several faces, keeps the
+//! connected parts of the mask that a positive stroke touches. Without this step, the per-pixel classifier would also
+//! mark walls and floors of the same colour that no stroke has touched.
 
 use super::classify::Classified;
 use super::input::Input;

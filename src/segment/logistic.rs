@@ -25,8 +25,11 @@ pub struct Objective {
 
 /// Finds the weights `w` that minimise the objective: the mean log loss plus `ridge / 2 |w|²`. The weight of the
 /// constant term is hardly penalised. The ridge makes the solution finite and unique even if the classes are separable,
-/// or if terms are duplicated or constant. Newton's method starts at `start`. It ends with the first step whose
-/// expected decrease of the objective is below `precision`, after 30 steps, or if the Hessian is not positive definite.
+/// or if terms are duplicated or constant.
+///
+/// Newton's method starts at `start`. It ends with the first step whose expected decrease of the objective is below
+/// `precision`, or after 30 steps. It ends early if the Hessian is not positive definite, or if no shortened step
+/// lowers the objective.
 pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Job) -> Result<Vec<f64>> {
     let mut w = start.to_vec();
     let mut here = Objective::at(problem, ridge, &w);
@@ -42,8 +45,8 @@ pub fn fit(problem: &Problem, ridge: f64, start: &[f64], precision: f64, job: Jo
             break;
         }
 
-        // Take a Newton step. Halve its length as long as it would raise the objective and is at least 1e-6 of a full
-        // step.
+        // Take a Newton step. While the step would raise the objective, halve its length; give up below 1e-6 of the
+        // full length.
         let mut length = 1.0;
         let (next, there) = loop {
             let next = moved(length);
@@ -114,7 +117,7 @@ widest! {
     }
 }
 
-/// Computes the logits of the rows for which `wanted` holds; each pair is the row's index and its logit.
+/// Computes the logits of the rows whose index `wanted` accepts. Each result is a pair: the row's index and its logit.
 pub fn logits(terms: &Table, w: &[f64], wanted: impl Fn(usize) -> bool) -> Vec<(usize, f64)> {
     let mut out = Vec::new();
     for (rows, block) in terms.blocks().filter(|(rows, _)| rows.clone().any(&wanted)) {

@@ -95,13 +95,16 @@ fn not_finite(bad: usize) -> Error {
 
 /// Segments an image by examples.
 ///
-/// If the features have [`CHANNELS`] channels and strokes are missing, the mask is a proposal:
+/// If strokes are missing and the features have [`CHANNELS`] channels, the mask is a proposal. For a surface, this
+/// requires that no region is given:
 /// - without negative strokes, the face of the room that the positive strokes lie on;
-/// - without positive strokes, the ceiling, minus the parts that resemble the negative strokes;
-/// - for lamps without positive strokes, the regions most like lamps among the brightest parts of the given mask.
+/// - without positive strokes, the ceiling, minus the parts that resemble the negative strokes.
 ///
-/// Errors (`Degenerate`): strokes are missing, and no mask can be proposed. Either the features do not have
-/// [`CHANNELS`] channels, or no face, ceiling or lamp was found.
+/// For lamps, it requires a region:
+/// - without positive strokes, the regions most like lamps among the brightest parts of the region.
+///
+/// Errors (`Degenerate`): strokes are missing, and no mask can be proposed. Either one of these requirements is not
+/// met, or no face, ceiling or lamp was found.
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Segmentation> {
     let features = input.features;
     params.check()?;
@@ -190,8 +193,7 @@ fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentati
     }
 }
 
-/// Draws samples of the given channels, then chooses the model and the subset of channels with the least expected loss
-/// on held-out strokes.
+/// Draws samples of the given channels, then chooses the model and the subset of channels (see [`select::choose`]).
 fn learn(input: &Input, params: &Params, subsets: &[u32], channels: &[usize], job: Job) -> Result<(Samples, Chosen)> {
     let features = input.features;
     let (samples, probe) = exec::both(|| samples::draw(input, channels, params), || samples::probe(input, channels));

@@ -15,8 +15,8 @@ pub struct Origin {
     /// Index of the sample's stroke. The negative strokes are numbered first, then the positive ones; strokes from
     /// which no sample is drawn are left out.
     pub stroke: usize,
-    /// The quarter of the stroke that holds the sample, 0 to 3, counted along x if the stroke is wider than high, else
-    /// along y.
+    /// The quarter of the stroke's samples that contains this sample, 0 to 3. The samples are sorted along x if they
+    /// extend at least as far along x as along y, else along y.
     pub part: usize,
 }
 
@@ -175,8 +175,8 @@ pub fn probe(input: &Input, channels: &[usize]) -> Vec<f64> {
         .collect()
 }
 
-/// Distributes `total` samples over the strokes in equal shares. If a stroke has fewer pixels than its share, the
-/// remainder goes to larger strokes.
+/// Distributes `total` samples in equal shares over strokes of the given sizes in pixels. If a stroke has fewer pixels
+/// than its share, the rest of its share goes to larger strokes.
 fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&i| (sizes[i], i));

@@ -25,11 +25,14 @@ pub struct Segmentation {
     /// they lie far from the samples of both classes. For lamps: 1 in regions that are almost like the painted lamps,
     /// else 0. Another stroke helps most where this value is high.
     pub unseen: Image,
-    /// Expected share of wrong pixels, in `[0, 1]`. For a surface: `(1 - u) e_parts + u e_strokes`, where `u` is the
-    /// mean of `unseen`. `e_parts` is the error on held-out parts of strokes, and applies to pixels like the painted
-    /// ones; `e_strokes` is the error on held-out whole strokes, and applies to pixels unlike the painted ones. For
-    /// lamps: the expected number of wrong pixels in the lamps and in doubtful regions, divided by the pixels of the
-    /// plane. 0 for a mask that the caller supplied.
+    /// Expected share of wrong pixels, in `[0, 1]`.
+    /// - For a surface: `(1 - u) e_parts + u e_strokes`, where `u` is the mean of `unseen`. `e_parts` is the error on
+    ///   held-out parts of strokes, and applies to pixels like the painted ones. `e_strokes` is the error on held-out
+    ///   whole strokes, and applies to pixels unlike the painted ones.
+    /// - For lamps: the expected number of wrong pixels in the lamps and in doubtful regions, divided by the number of
+    ///   pixels of the plane or, without a plane, of the photo.
+    /// - For a whole face of the room that is proposed: a constant.
+    /// - 0 for a mask that the caller supplied.
     pub error: f64,
     /// The classifier. `None` if there is none: for lamps, for a proposal that is a whole face of the room, and for a
     /// mask that the caller supplied.
@@ -63,9 +66,9 @@ impl Segmentation {
         }
     }
 
-    /// Removes from the mask of a plane the pixels for which `is_off` is true, which lie off the plane. If more than
-    /// half of the pixels of a positive stroke are off, nothing is removed: the user has painted this stroke after
-    /// `is_off` was determined, so `is_off` is out of date.
+    /// Removes from the mask of a plane the pixels that lie off the plane: those for which `is_off` is true. Exception:
+    /// if more than half of the pixels of a positive stroke are off, nothing is removed. The user has then painted this
+    /// stroke after `is_off` was determined, so `is_off` is out of date.
     pub fn remove_off_plane<'a>(
         &mut self,
         is_off: impl Fn(usize) -> bool,

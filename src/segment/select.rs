@@ -3,8 +3,8 @@
 //!
 //! Two kinds of cross-validation are run. Holding out parts of strokes measures how well the model does on surfaces
 //! that the user has painted. Holding out whole strokes measures how well it extrapolates to other surfaces. Each kind
-//! gives an error and a calibration factor. A pixel's calibration factor is interpolated between the two, by the
-//! distance of its features from those of the strokes.
+//! gives an error and a calibration factor. The calibration factor of a pixel is interpolated between these two
+//! factors, by the distance of the pixel's features from the features of the strokes.
 
 use super::ellipsoid::{self, Ellipsoid, Spread};
 use super::logistic::{self, Objective, Problem};
@@ -24,7 +24,7 @@ const CV_SAMPLES: usize = 250;
 /// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 /// [origin not recorded]
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
-/// A fit ends with the step whose expected decrease of the objective (see `logistic::fit`) is below this value.
+/// A fit ends with the first step whose expected decrease of the objective (see `logistic::fit`) is below this value.
 /// `CV_PRECISION` applies to fits that only compare models. With the default number of samples, the price of a term is
 /// 1 / 2000 (see [`choose`]), which is 50 times `CV_PRECISION`. `PRECISION` applies to the final fit. Newton's method
 /// converges quadratically: after a step that lowers the objective by d, a further decrease of the order of d² remains.
@@ -59,7 +59,7 @@ pub struct Validation {
     pub error: f64,
     /// The calibration factor by which logits are multiplied.
     pub scale: f64,
-    /// Mean log loss of the held-out samples after calibration.
+    /// Mean log loss of the held-out samples after calibration, with the weights of `error`.
     loss: f64,
 }
 
@@ -100,11 +100,12 @@ struct Trial<'a> {
     ridge: f64,
 }
 
-/// Chooses the model and the features with the lowest expected loss over the whole image.
+/// Chooses the model and the features with the lowest sum `(1 - u) loss_parts + u loss_strokes + price`.
 ///
-/// The expected loss of pixels like the painted ones is the log loss on held-out parts of strokes; the expected loss of
-/// all other pixels is the log loss on held-out whole strokes. A price is added to the loss: number of terms / number
-/// of samples (Akaike's criterion). The simpler of two equally good models therefore wins.
+/// The first two terms are the expected loss over the whole image. `u` is the share of pixels unlike the painted ones.
+/// `loss_parts` is the log loss on held-out parts of strokes, and applies to pixels like the painted ones.
+/// `loss_strokes` is the log loss on held-out whole strokes, and applies to all other pixels. The price is number of
+/// terms / number of samples (Akaike's criterion). The simpler of two equally good models therefore wins.
 pub fn choose(input: &SelectionInput, job: Job) -> Result<Chosen> {
     let SelectionInput { samples, subsets, .. } = *input;
     let standard = Standard::of(samples);

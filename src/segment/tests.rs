@@ -134,7 +134,8 @@ fn a_stroke_on_a_wrong_region_mends_it() {
     let few = segment(&features, &strokes[..3], None, &Params::default()).unwrap();
     let all = segment(&features, &strokes, None, &Params::default()).unwrap();
     assert!(iou(&all.mask, is_ceiling) >= iou(&few.mask, is_ceiling));
-    // Pixels under the negative strokes must be outside the mask, and `unseen` must be low there.
+    // Less than 5 % of the pixels under each of the later strokes may lie in the mask. With these strokes, the mean of
+    // `unseen` under them must be below 0.1, and not higher than without them.
     for stroke in &strokes[3..] {
         let inside = stroke.pixels.iter().filter(|&&p| all.mask.data[p as usize] > 0.5).count();
         assert!(inside * 20 < stroke.pixels.len());
@@ -159,14 +160,15 @@ fn what_no_stroke_has_shown_is_told() {
         let values: Vec<f32> = (0..faces.len()).filter(|&i| of(i)).map(|i| got.unseen.data[i]).collect();
         values.iter().sum::<f32>() / values.len() as f32
     };
-    // Strokes of a few pixels do not cover all features of the other surfaces, so `unseen` is above 0 there too.
+    // On the other surfaces `unseen` is above 0 too, because strokes of a few pixels do not cover all features of these
+    // surfaces.
     let known = mean(&|i| faces[i] != 5 && !is_banner(i));
     assert!(mean(&is_banner) > 0.99 && known < 0.33, "{} {known}", mean(&is_banner));
 }
 
 #[test]
 fn one_class_or_none_is_an_error_that_says_what_to_paint() {
-    // With colour channels only, no mask can be proposed.
+    // With two channels only, no mask can be proposed.
     let (features, _) = room();
     let features = Image::from_fn(WIDTH, HEIGHT, |x, y| [features.pixel(x, y)[0], features.pixel(x, y)[1]]).unwrap();
     let strokes = plane_strokes();

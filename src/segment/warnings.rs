@@ -134,7 +134,6 @@ impl Segmentation {
         )
     }
 
-    /// The number of pixels divided by the number of samples drawn from the strokes.
     fn per_sample(&self, pixels: usize) -> f64 {
         pixels as f64 / (self.samples[0] + self.samples[1]).max(1) as f64
     }
@@ -214,10 +213,10 @@ pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
     )
 }
 
-/// Warns if the painted lamps are hardly brighter than the plane. Compares the lamp strokes with two sets: the
-/// positive plane strokes together with the strokes marked "not light", and the "not light" strokes alone. A plane
-/// stroke may cross lamps, whereas "not light" strokes lie beside them. The set that shows the greater difference
-/// counts. The first channel of the features is L*.
+/// Warns if the painted lamps are hardly brighter than the plane. Compares the lamp strokes with two sets: the positive
+/// plane strokes together with the strokes marked "not light", and the "not light" strokes alone. A plane stroke may
+/// cross lamps, whereas "not light" strokes lie beside them. Of the two comparisons, the one in which lamps are
+/// brighter with the greater probability counts (see `brighter`). The first channel of the features is L*.
 pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Option<Warning> {
     let lamps: Vec<&Stroke> = lights.iter().filter(|s| s.positive).collect();
     let beside = || lights.iter().filter(|s| !s.positive);
@@ -231,9 +230,9 @@ pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Optio
     warning.map(|warning| warning.at(Some(features.centre_of(darkest as usize))))
 }
 
-/// Computes the probability that a random lamp pixel is brighter than a random plane pixel: the area under the
-/// receiver operating characteristic of L* (Hanley and McNeil 1982). Also returns a pixel of the lamp stroke with the
-/// least probability. `None` if there is no lamp pixel or no plane pixel.
+/// Computes the probability that a random lamp pixel is brighter than a random plane pixel: the area under the receiver
+/// operating characteristic of L* (Hanley and McNeil 1982). Also returns a pixel of one lamp stroke: the stroke whose
+/// own pixels have the least probability. `None` if there is no lamp pixel or no plane pixel.
 fn brighter(features: &Image, lamps: &[&Stroke], plane: &[&Stroke]) -> Option<(f64, u32)> {
     let lightness = |&p: &u32| features.data.get(p as usize * features.channels).copied();
     let mut plane: Vec<f32> = plane.iter().flat_map(|s| &s.pixels).filter_map(lightness).collect();

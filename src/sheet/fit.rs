@@ -24,7 +24,7 @@ pub struct Fit {
     pub marks: Vec<usize>,
     /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
     pub residual: f64,
-    /// Photo pixels per page pixel, along the diagonal between opposite corner marks.
+    /// Photo pixels per page pixel, along the longer of the two diagonals between opposite corner marks in the photo.
     pub scale: f64,
 }
 
@@ -45,7 +45,7 @@ pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], job: Job) -> Res
     }
     let extent = extent(page, &found.map);
     let mut map = least_squares(page, found.map, &pairs);
-    // Discard marks inconsistent with the others.
+    // Discard marks that lie farther than the final tolerance from their predicted positions.
     pairs.retain(|&(mark, at)| map.apply(page.marks[mark]).distance(at) < FINAL_TOLERANCE * extent);
     if pairs.len() < MIN_MARKS {
         return Err(too_few(pairs.len()));
@@ -76,9 +76,10 @@ struct Guess {
     misfit: f64,
 }
 
-/// Finds the map from page to photo under which most marks coincide with candidates. Tries every quadruple of
-/// candidates as the four corner marks and as the four midpoint marks, each in four rotations. If one mark is missing,
-/// the corners or the midpoints are still complete.
+/// Finds the map from page to photo under which most marks coincide with candidates; among equal numbers, the one with
+/// the smallest misfit. `None` if no map makes [`MIN_MARKS`] marks coincide. Tries every quadruple of candidates as the
+/// four corner marks and as the four midpoint marks, each in four rotations. If one mark is missing, the corners or the
+/// midpoints are still complete.
 fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();
     let mut best: Option<Guess> = None;
@@ -134,8 +135,8 @@ fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
     Guess { map, pairs, misfit }
 }
 
-/// Finds the map that minimises the squared distances between the marks and their predicted positions in the photo, by
-/// Gauss-Newton steps from a good start.
+/// Finds the map that minimises the sum of squared distances between the marks and their predicted positions in the
+/// photo, by Gauss-Newton steps from `start`.
 fn least_squares(page: &Page, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
     // Scale page coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
     let half = DVec2::new(page.width as f64, page.height as f64) / 2.0;

@@ -106,8 +106,8 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
     Ok(Aligned { image, to_photo, marks: found.marks.len(), residual: found.residual, error })
 }
 
-/// Divides the image by the brightness of white paper. The logarithm of this brightness is a bilinear function of the
-/// position on the sheet, fitted to the white quadrants of the marks.
+/// Divides each channel of the image by the brightness of white paper in this channel. The logarithm of this brightness
+/// is a bilinear function of the position on the sheet, fitted to the white quadrants of the marks.
 fn even_light(
     image: &mut Image,
     photo: &Image,

@@ -17,8 +17,8 @@ fn params() -> Params {
     Params { dpi: 100.0, ..Params::default() }
 }
 
-/// Returns a photo of 1300 × 1000 pixels of a sheet, and the true map from the sheet to the photo. The sheet lies on a
-/// dark table, with its corners at `corners`. The light falls off to one side, and the photo has noise.
+/// Returns a simulated photo of a sheet, 1300 × 1000 pixels, and the true map from the sheet to the photo. The sheet
+/// lies on a dark table, with its corners at `corners`. The light falls off to one side, and the photo has noise.
 fn photograph(sheet: &Image, corners: [[f64; 2]; 4]) -> (Image, Homography) {
     let (w, h) = (sheet.width as f64, sheet.height as f64);
     let page = [[0.0, 0.0], [w, 0.0], [w, h], [0.0, h]].map(DVec2::from);

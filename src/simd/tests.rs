@@ -58,8 +58,8 @@ fn input(pool: &Pool) -> (Input, f64) {
     (input, f64::from(office.ceiling_height - camera.position.y))
 }
 
-/// Runs all stages of the lighting transfer, each on the results of the previous stages, and compares the results of
-/// every stage.
+/// Runs all stages of the lighting transfer, each on the results of the previous stages. Every stage must give the same
+/// results at every SIMD level.
 #[test]
 fn the_lighting_transfer_is_the_same_to_the_bit_at_every_level() {
     let pool = Pool::new(2).unwrap();

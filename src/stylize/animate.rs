@@ -2,14 +2,14 @@
 //! the motion, are kept where they still fit, so that paint sticks to objects. Three kinds of patches are matched anew:
 //!
 //! - patches whose match fits badly;
-//! - patches astride a silhouette, whose pixels do not all come from one patch of the previous frame. Their paint
-//!   would stay behind as the ghost of a contour;
+//! - patches astride a silhouette: their pixels do not all come from one patch of the previous frame. If they kept a
+//!   match, its paint would stay behind as the ghost of a contour;
 //! - patches whose light has changed since their match was chosen (`memory`). The change adds up over the frames, so
 //!   the paint follows slow changes too.
 //!
-//! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame
-//! keeps the matches of a random set of blocks. The frames then flicker as if painted by hand (after the temporal
-//! noise control of Fišer et al. 2014, "Color Me Noisy").
+//! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame keeps
+//! the matches of a random set of blocks. The frames then flicker as if painted by hand (after the temporal noise
+//! control of Fišer et al. 2014, "Color Me Noisy").
 
 use super::budget::budget;
 use super::level::{Level, Problem};
@@ -28,8 +28,8 @@ const BLOCK: usize = 24;
 /// A patch is astride a silhouette if the motion of one of its pixels differs from the motion of its centre by more
 /// than this, in pixels along x or y. [bench sequences]
 const MAX_SPREAD: f32 = 1.0;
-/// A patch is matched anew when the light has changed by this much since its match was chosen, as a root mean square
-/// over the guides of light, encoded for display. [bench sequences]
+/// A patch is matched anew when the light on it has changed by more than this since its match was chosen: the weighted
+/// root mean square over the channels of light, encoded for display (white = 1). [bench sequences]
 const MAX_CHANGE: f32 = 0.02;
 
 /// The matches of the previous frame, advected into this frame.
@@ -77,9 +77,12 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Moved> {
 /// The memories of the previous frame and of this frame.
 pub(super) type Memories<'a> = Option<(&'a Memory, &'a Memory)>;
 
-/// Computes the distances of the advected matches, and returns which target patches keep their match: the patches whose
-/// error lies left of the knee of the sorted errors, whose light has hardly changed (if `memories` are given), and
-/// which are not astride a silhouette. Blocks that [`Params::coherence`] chooses for new matches keep nothing.
+/// Computes the distances of the advected matches, and returns which target patches keep their match. A patch keeps its
+/// match if all of these conditions hold:
+/// - The error of the match lies left of the knee of the sorted errors.
+/// - The light on the patch has hardly changed since the match was chosen; always true without `memories`.
+/// - The patch is not astride a silhouette, and its centre was visible in the previous frame.
+/// - [`Params::coherence`] does not choose the block of the patch for new matches.
 pub(super) fn keep(
     level: &mut Level,
     moved: &mut Moved,
@@ -102,8 +105,8 @@ pub(super) fn keep(
     let block = |i: usize| [(i % field.width / BLOCK) as u64, (i / field.width / BLOCK) as u64];
     let stays = |i: usize| Rng::new(seed, &block(i)).next_f32() < params.coherence;
     let is_lit_alike = |i: usize| {
-        // Each block has its own limit, 0.5 to 1.5 times `MAX_CHANGE`, so that slow changes of light do not rematch
-        // the whole picture in one frame.
+        // Each block has a limit of its own, 0.5 to 1.5 times `MAX_CHANGE`. Under a slow change of light, the blocks
+        // therefore rematch in different frames.
         let share = 0.5 + Rng::new(2, &block(i)).next_f32();
         memories.is_none_or(|(before, now)| now.change(i, before, from[i] as usize) <= share * MAX_CHANGE)
     };

@@ -25,8 +25,8 @@ const GUIDES: f32 = 0.1;
 /// search iterations. `RADIUS`: radius of the random search in pixels.
 const ITERATIONS: usize = 2;
 const RADIUS: usize = 256;
-/// Maximum number of uses of an exemplar patch, as a multiple of the mean number of uses.
-/// [bench stylit:autocomplete]
+/// Maximum number of uses of an exemplar patch, as a multiple of the mean number of uses; the mean counts as at least
+/// 1. [bench stylit:autocomplete]
 const MAX_USES: f64 = 100.0;
 /// Maximum number of rounds of [`limit_usage`]. In each round, exemplar patches above the maximum number of uses give
 /// up target patches, which then search for other matches.
@@ -75,7 +75,7 @@ impl<'a> Border<'a> {
     }
 }
 
-/// Searches other matches for target patches whose exemplar patch is used too often. The exemplar patch keeps the
+/// Searches for other matches of target patches whose exemplar patch is used too often. The exemplar patch keeps the
 /// target patches with the smallest distances, up to the maximum number of uses.
 pub(super) fn limit_usage(level: &Level, field: &mut Field, job: Job) -> Result<()> {
     let mean = level.wanted.len() as f64 / level.allowed.len() as f64;

@@ -15,7 +15,7 @@ const MIN_ERRORS: usize = 8;
 /// Maximum number of points of the sorted curve to which a hyperbola is fitted.
 const SAMPLES: usize = 256;
 
-/// Minimum share of the variance that a hyperbola must explain. [origin not recorded]
+/// Minimum share of the variance of the sorted errors that a hyperbola must explain. [origin not recorded]
 const MIN_EXPLAINED: f64 = 0.8;
 /// A curve has a knee only if it runs farther than this below the diagonal. [origin not recorded]
 const MIN_SAG: f64 = 0.01;

@@ -1,18 +1,18 @@
-//! Decides by the exemplar whether its strokes follow the shapes, so that the normals should guide the run too.
+//! Decides whether the normals should guide a run too: they should if the strokes of the exemplar follow its shapes.
 //!
 //! Guides of light determine how dark the paint is, but hardly in which direction its strokes run: places of equal
 //! light can have any slope. The exemplar is divided into blocks, and the direction of the strokes in each block is
 //! measured (structure tensor). For a block with a clear direction, two searches look for blocks elsewhere: one
 //! compares the light alone, the other one light and normals. Strokes follow the shapes if two conditions hold:
 //!
-//! - Blocks of similar light and normals have similar directions, compared with all blocks of other normals. This does
-//!   not hold for strokes of one direction, and for media without strokes.
-//! - They have directions at least as similar as blocks of similar light. This does not hold if strokes follow the
-//!   light.
+//! - The blocks found by light and normals have directions similar to the block's own, compared with all blocks of
+//!   other normals. This does not hold for strokes of one direction, and for media without strokes.
+//! - The blocks found by light and normals have directions at least as similar as the blocks found by light alone. This
+//!   does not hold if strokes follow the light.
 //!
-//! Only those blocks count for which the light alone leads to other normals: elsewhere the normals change nothing. A
-//! comparison of the two searches alone would not suffice, because light and normals of a single ball determine each
-//! other; those of the target's shapes do not.
+//! A block counts only if the light alone leads to blocks of other normals; elsewhere the normals change nothing. A
+//! comparison of the two searches alone would not suffice: on a single ball, light and normals determine each other. On
+//! the shapes of the target, they do not.
 
 use super::guides::{Guide, MAX_CHANNELS, Range, SIMILAR};
 use super::params::Input;
@@ -33,27 +33,29 @@ const CELLS: usize = 8;
 const POINTS: usize = 4;
 /// Number of pixels from which the range of a guide is determined.
 const SAMPLES: usize = 4096;
-/// Maximum number of blocks in which a search looks, and for which it looks. Of more, every second, third and so on is
-/// taken.
+/// `MAX_BLOCKS`: maximum number of blocks among which a search looks. `MAX_SEARCHES`: maximum number of blocks for
+/// which searches run. Of a longer list, every second block is taken, or every third, and so on.
 const MAX_BLOCKS: usize = 1024;
 const MAX_SEARCHES: usize = 256;
-/// Blocks within which the light deviates from its mean by more than this are left out, as a weighted root mean square
-/// of channels in `[0, 1]`: their direction may be that of the edge of a shadow. For the normals, the limit is
-/// [`SIMILAR`]. [bench stylit:directions]
+/// A block is left out if its light deviates from the block's mean by more than this, as a weighted root mean square of
+/// channels in `[0, 1]`: its direction may be that of the edge of a shadow. For the normals, the limit is [`SIMILAR`].
+/// [bench stylit:directions]
 const MAX_DEVIATION: f32 = 0.05;
-/// Minimum coherence of the structure tensor of a block with a clear direction. [bench stylit:directions]
+/// Minimum coherence of a block with a clear direction. The coherence is (λ₁ - λ₂) / (λ₁ + λ₂), where λ₁ ≥ λ₂ are the
+/// eigenvalues of the structure tensor. [bench stylit:directions]
 const MIN_COHERENCE: f32 = 0.35;
-/// Minimum root mean square of the gradient per cell, in units of the display encoding (white = 1). Rounding to 8 bits
-/// makes less. [convention]
+/// Minimum root mean square of the gradient, as change per cell of values encoded for display (white = 1). Rounding to
+/// 8 bits causes smaller gradients. [convention]
 const MIN_GRADIENT: f32 = 0.01;
 /// A block counts as elsewhere if it is more than this number of columns or rows of blocks away: a stroke may run
 /// through nearer blocks.
 const NEAR: usize = 1;
 /// Number of blocks that a search finds.
 const FOUND: usize = 4;
-/// Minimum number of blocks that count.
+/// Strokes follow the shapes only if at least this number of blocks count ([`Directions::count`]).
 const MIN_COUNT: usize = 16;
-/// Strokes follow the shapes if light and normals lower the mean angle to this share. [bench stylit:directions]
+/// Strokes follow the shapes only if [`Directions::by_normals`] is at most this share of [`Directions::spread`].
+/// [bench stylit:directions]
 const MAX_RATIO: f64 = 0.52;
 /// Weight of the normals where strokes follow the shapes, if each guide of light has the weight 1.
 /// \[bench stylit:directions\]
@@ -80,8 +82,9 @@ impl Directions {
     }
 }
 
-/// Returns the guides of a run: the given ones and, if the strokes of the exemplar follow the shapes, the normals; and
-/// the weight of the normals, 0 without them. A frame of a sequence does as the frame before.
+/// Returns the guides of a run, and the weight of the normals. The normals are added to the given guides if the strokes
+/// of the exemplar follow the shapes. The weight is 0 if they do not, if no normals are given, or if there would be
+/// more than [`MAX_CHANNELS`] channels. A later frame of a sequence takes the weight of the previous frame.
 pub(super) fn with_normals<'a>(
     input: &Input<'a>,
     source_mask: Option<&[bool]>,
@@ -151,14 +154,14 @@ struct Scale<'a> {
     guide: &'a Guide<'a>,
     offset: f32,
     factor: f32,
-    /// Weight relative to all guides of light together.
+    /// Weight of the guide, as a share of the total weight of all guides of light.
     share: f32,
 }
 
 impl<'a> Scale<'a> {
     fn of(guide: &'a Guide<'a>, share: f32) -> Self {
         let data = &guide.source.data;
-        // An odd step visits all channels and columns.
+        // An odd step visits all channels and columns if their numbers are powers of two.
         let step = (data.len() / SAMPLES) | 1;
         let mut values: Vec<f32> = data.iter().step_by(step).copied().filter(|v| v.is_finite()).collect();
         values.sort_unstable_by(f32::total_cmp);
@@ -176,8 +179,9 @@ impl<'a> Scale<'a> {
         if self.guide.range == Range::Light { linear_to_srgb(v) } else { v }
     }
 
-    /// Appends the mean of each channel at some places, times the square root of the channel's weight. Returns the
-    /// weighted variance. `weight` is the weight of all channels together.
+    /// Appends to `means` the mean of each channel over `places`, times the square root of the channel's weight.
+    /// Returns the variance over `places`, weighted and summed over the channels. `weight` is the weight of all
+    /// channels together.
     fn means(&self, places: &[[usize; 2]], weight: f32, means: &mut Vec<f32>) -> f32 {
         let (channels, count) = (self.guide.source.channels, places.len() as f32);
         let weight = weight / channels as f32;
@@ -235,7 +239,7 @@ fn cells(artwork: &Image, cell: usize, job: Job) -> Result<Image> {
 /// modulo π; `None` if it has no clear direction.
 fn angle(cells: &Image, first: [usize; 2], side: usize) -> Option<f32> {
     let at = |x: usize, y: usize| cells.data[y.min(cells.height - 1) * cells.width + x.min(cells.width - 1)];
-    // Compute the covariance of the gradient. The mean gradient is that of shading.
+    // Compute the covariance of the gradient about its mean: the mean gradient is that of shading, not of strokes.
     let [mut x, mut y, mut xx, mut xy, mut yy] = [0.0f32; 5];
     for (x0, y0) in (first[1]..first[1] + side).flat_map(|y| (first[0]..first[0] + side).map(move |x| (x, y))) {
         let dx = 0.5 * (at(x0 + 1, y0) - at(x0.saturating_sub(1), y0));
@@ -255,7 +259,8 @@ fn grey(pixel: &[f32]) -> f32 {
 
 /// Returns three mean angles, in degrees, between a block and other blocks: all blocks elsewhere with other normals,
 /// the blocks that are found by the light alone, and the blocks that are found by light and normals. `weight` is the
-/// weight of the normals. `None` if the light alone leads to similar normals, or if there are too few blocks.
+/// weight of the normals. `None` if the blocks found by the light alone have similar normals, or if there are too few
+/// blocks.
 fn compare(blocks: &[Block], own: &Block, weight: f32) -> Option<[f64; 3]> {
     let (mut by_light, mut by_normals) = (Nearest::new(), Nearest::new());
     let (mut sum, mut count) = (0.0, 0.0);
@@ -273,7 +278,7 @@ fn compare(blocks: &[Block], own: &Block, weight: f32) -> Option<[f64; 3]> {
     (other_normals > SIMILAR).then(|| [sum / count, light_turn, turn].map(|t| f64::from(t).to_degrees()))
 }
 
-/// The nearest blocks so far by their distance: the distance, and two values to average.
+/// The [`FOUND`] nearest blocks so far, in order of distance: for each, the distance and two values to average.
 struct Nearest([(f32, [f32; 2]); FOUND]);
 
 impl Nearest {

@@ -8,7 +8,8 @@
 //! - Two paints for one light: of the blocks elsewhere with equal guides, a quarter or more differ clearly from the
 //!   median paint of all of them.
 //!
-//! Both are measured in units of the medium's own grain: the difference that blocks with equal guides typically have.
+//! Both are measured in units of the medium's grain: the typical difference between the mean paint of a block and the
+//! median paint of all blocks with equal guides.
 
 use super::guides::SIMILAR;
 use super::level::Problem;
@@ -39,7 +40,8 @@ const TWO_PAINTS: f32 = 4.0;
 /// Defects of the exemplar, with their places in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Doubts {
-    /// Largest difference, in grains, of a block to the blocks elsewhere with similar guides, and the block's centre.
+    /// Largest difference of a block from the blocks elsewhere with similar guides (the 5 % quantile over these
+    /// blocks), in grains; and the centre of this block in pixels.
     pub blemish: f64,
     pub blemish_at: Option<[usize; 2]>,
     /// Share of the blocks whose light has two paints, among the blocks with at least `MIN_OTHERS` blocks of equal

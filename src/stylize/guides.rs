@@ -1,4 +1,5 @@
-//! Guides: pairs of exemplar and target channels, normalised to `[0, 1]` with a common scale.
+//! Guides: pairs of exemplar and target channels. Each guide is normalised to `[0, 1]`, with one scale for exemplar and
+//! target.
 
 use crate::error::{Error, Result, check_range};
 use crate::exec;
@@ -56,7 +57,7 @@ pub(super) struct Channels {
 
 impl Channels {
     /// Combines the guides. If `half`, halves their resolution, so that all further work handles a quarter of the
-    /// pixels.
+    /// pixels. `match_appearance`: see `Params::match_appearance`.
     pub fn new(guides: &[Guide], match_appearance: f32, half: bool, job: Job) -> Result<Self> {
         let first = guides.first().ok_or_else(no_guides)?;
         let count: usize = guides.iter().map(|g| g.source.channels).sum();
@@ -109,8 +110,8 @@ pub(super) fn no_guides() -> Error {
     Error::argument("guides is empty; give at least one pair")
 }
 
-/// Moves the range of a source channel towards the range of the same channel in the target, by the share `strength`. A
-/// range extends from the 5th to the 95th percentile.
+/// Maps the range of a source channel onto the range of the same channel in the target. `strength` is the share of this
+/// change that is applied. A range extends from the 5th to the 95th percentile.
 fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f32) {
     let ends = |image: &Image| {
         let step = (image.width * image.height >> 18).max(1) * image.channels;

@@ -18,8 +18,8 @@ const SAMPLES: usize = 128;
 const STEPS: f32 = 32.0;
 /// Maximum number of different rounded guide values of the exemplar with which the target is compared.
 const MAX_CODES: usize = 2048;
-/// Side, in samples, of the blocks into which the target is divided. The block with the most samples whose light the
-/// exemplar lacks gives the place of the warning.
+/// Side, in samples, of the square blocks into which the target is divided. The place of the warning is the centre of
+/// the block with the most samples whose light the exemplar lacks.
 const BLOCK: usize = 8;
 
 /// The part of the target whose light the exemplar lacks.
@@ -105,8 +105,8 @@ struct Codes {
     weights: Vec<f64>,
 }
 
-/// Collects the distinct values of the exemplar's guides of light, inside the mask; `None` if no guide of light has a
-/// weight above 0.
+/// Collects the distinct values of the exemplar's guides of light, inside the mask, thinned to at most [`MAX_CODES`].
+/// `None` if no guide of light has a weight above 0.
 fn codes(guides: &Channels, source_mask: Option<&[bool]>) -> Result<Option<Codes>> {
     let source = &guides.source;
     let of_light = || guides.weights.iter().zip(&guides.is_light).map(|(w, &is_light)| if is_light { *w } else { 0.0 });

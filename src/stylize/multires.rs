@@ -104,8 +104,8 @@ fn quantise<'a>(problem: &'a Problem, params: &Params, l: usize, seed: u64, job:
     Ok(level)
 }
 
-/// Returns the initial field and picture of level `l`, from the field of the next coarser level or of an earlier
-/// result.
+/// Returns the initial state of level `l`. The field comes from the next coarser level or from an earlier result, else
+/// from a search by the guides alone.
 fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, job: Job) -> Result<State> {
     let (problem, params) = (level.problem, setup.params);
     // Start from the given field, or find a field by the guides alone.
@@ -193,8 +193,8 @@ fn rematch(
 ) -> Result<Option<Vec<PassReport>>> {
     let State { field, picture, kept, .. } = state;
     // The distance of a match changes only if the target patch contains a changed pixel, so rematch only these patches.
-    // Two iterations rematch all patches: the first one, for which no distances are valid yet, and the first one of
-    // `Params::polish`. Before it, the patches were assigned under the budget, not to their nearest exemplar patches.
+    // Two iterations rematch all patches. In the first iteration, no distances are valid yet. In the first iteration of
+    // `Params::polish`, the patches are still assigned under the budget, not to their nearest exemplar patches.
     let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
     let rematches_all = k == 0 || polishes && k == params.finest_iterations;
     let mut changed = if rematches_all {

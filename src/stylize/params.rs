@@ -116,7 +116,7 @@ pub struct Params {
     pub settle: usize,
     /// Cost of a seam in the iterations of `settle`, as a share of the mean error, in `[0, 100]`. A seam lies between
     /// two neighbouring target patches whose matches are not neighbours in the exemplar. Values up to 3 change the
-    /// guide error by less than the seed does (docs/notes/stylize.md). \[bench stylit\]
+    /// guide error by less than another `seed` does (docs/notes/stylize.md). \[bench stylit\]
     pub seam: f32,
     pub vote: VoteMode,
     /// The vote that forms the final picture from the final field.

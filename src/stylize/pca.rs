@@ -87,7 +87,8 @@ fn project(image: &Image, vectors: &[f64], roots: &[f64], count: usize, job: Job
     Ok(out)
 }
 
-/// Stretches each component to `[0, 1]` over both images; returns the weights of the components.
+/// Stretches each component to `[0, 1]` over both images. Returns the weight of each component: the square of its range
+/// before the stretch.
 fn stretch(source: &mut Image, target: &mut Image) -> Vec<f64> {
     let count = source.channels;
     let mut weights = Vec::with_capacity(count);

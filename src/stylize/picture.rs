@@ -75,8 +75,8 @@ pub(super) fn decode_into(
                 (true, Some(known)) => pixel.copy_from_slice(known.pixel(x, y)),
                 (true, None) => pixel.fill(0.0),
                 _ => match whole.then(|| origin(field, problem.patch, x, y)).flatten() {
-                    // Near the border of a painted part, `border::fade` has changed the voted paint: check that it
-                    // equals the exemplar.
+                    // Near the border of a painted part, `border::fade` has changed the voted paint. So check that the
+                    // pixel still equals the exemplar.
                     Some((px, py)) if picture.pixel(x, y) == problem.style.pixel(px, py) => {
                         pixel.copy_from_slice(artwork.pixel(px, py));
                     }

@@ -23,8 +23,8 @@ pub struct Prediction {
     pub energy: f64,
 }
 
-/// The time per pixel grows with a power of the number of pixels, because larger fields converge more slowly. This is
-/// the maximum exponent. [bench plan:stylisations]
+/// Maximum of the exponent e in: time per pixel proportional to nᵉ, where n is the number of pixels. The time per pixel
+/// grows because larger fields converge more slowly. [bench plan:stylisations]
 const MAX_GROWTH: f64 = 0.12;
 
 /// Pilot runs of several settings on one input. `ladder` holds the settings, and `usual` is the index of the reference
@@ -41,16 +41,17 @@ pub struct PilotRuns<'a> {
     /// Measurements at the highest pilot resolution, one per element of `ladder`. The reference settings have one from
     /// the start, other settings after [`Self::refine`]; until then `None`.
     near: Vec<Option<Prediction>>,
-    /// Measurements of all settings at the next lower resolution.
+    /// Measurements of all settings at the second highest pilot resolution.
     middle: Vec<Prediction>,
     /// Predicted energy of the reference settings at full resolution.
     energy: f64,
 }
 
 impl<'a> PilotRuns<'a> {
-    /// Runs all settings in `ladder`, which must have the same [`Params::preview`]; ignores the previous frame and the
-    /// motion in `input`. The reference settings, at index `usual`, run at three resolutions, of which the highest has
-    /// 32 to 128 thousand pixels. All other settings run at the middle resolution.
+    /// Runs all settings in `ladder`, which must have the same [`Params::preview`]. Ignores the previous frame and the
+    /// motion in `input`. The reference settings, at index `usual`, run at three resolutions. At the highest of these,
+    /// the smaller of exemplar and target has 32 to 128 thousand pixels, or all of its pixels if it has fewer. All
+    /// other settings run at the middle resolution.
     ///
     /// # Errors
     /// Those of [`super::run`].

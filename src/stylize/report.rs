@@ -31,7 +31,8 @@ pub struct Usage {
     pub used: f64,
     /// Number of uses of the patch that is used most often.
     pub max_uses: u32,
-    /// Entropy of the usage in bits; at most log2 of the number of target patches.
+    /// Entropy, in bits, of the distribution of the matches over the exemplar patches; at most log2 of the number of
+    /// target patches.
     pub entropy: f64,
 }
 
@@ -44,8 +45,8 @@ pub struct Report {
     /// exemplar pixels.
     pub unblended_share: f64,
     /// One channel: for each target pixel, the weighted root mean square difference between its guides and the guides
-    /// of the exemplar pixel painted there, in `[0, 1]`. It is high where no part of the exemplar is suitable (Fig.
-    /// 17), and 0 where a pixel has no match.
+    /// of the exemplar pixel painted there, in `[0, 1]`. It is high where no part of the exemplar is suitable (StyLit,
+    /// Fig. 17), and 0 where a pixel has no match.
     pub guide_error: Image,
     /// Two channels: for each target pixel, the position in the artwork from which its paint comes, x and y in pixels.
     /// The patch with the nearest centre determines it; -1 if that patch has no match.

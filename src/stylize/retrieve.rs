@@ -104,9 +104,9 @@ pub(super) fn retrieve(
     Ok(passes)
 }
 
-/// Assigns target patches to exemplar patches in order of rising error, until the sum of the errors reaches the budget;
-/// [`Mode::Uniform`] has no budget. Returns the share of the exemplar patches whose error lies left of the knee of the
-/// sorted errors, and the number of target patches assigned.
+/// Assigns target patches to exemplar patches in order of rising error. Stops before the sum of the errors exceeds the
+/// budget; [`Mode::Uniform`] has no budget. Returns the share of the exemplar patches whose error lies left of the knee
+/// of the sorted errors, and the number of target patches assigned.
 fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode, job: Job) -> Result<(f64, usize)> {
     // Sort by error, then by position.
     let found = reverse.error.iter().enumerate().filter(|(_, e)| **e != u32::MAX);

@@ -129,7 +129,7 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
     let (budget, nearest) = (with(Mode::Budget), with(Mode::Nearest));
     let (rich, poor) = (budget.report.usage, nearest.report.usage);
     assert!(rich.used > 1.1 * poor.used && rich.entropy > poor.entropy, "{rich:?} {poor:?}");
-    // Returns the mean squared difference of horizontal neighbours.
+    // Returns the mean squared difference of horizontal neighbours in the first channel, up to a constant factor.
     let power = |image: &Image| {
         let differences = image.data.chunks_exact(3 * image.width).flat_map(|row| {
             row.chunks_exact(3).zip(row[3..].chunks_exact(3)).map(|(p, q)| f64::from(p[0] - q[0]).powi(2))
@@ -271,7 +271,7 @@ fn extremes_have_an_answer() {
             finite(stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap());
             finite(stylise(&input(&artwork(&b), &[guide(&b, &a)]), &params).unwrap());
         }
-        // A single highlight of a million must not dominate.
+        // A single highlight of a million must not compress all other light towards black.
         let mut hot = a.clone();
         hot.pixel_mut(15, 10)[0] = 1e6;
         let output = finite(stylise(&input(&art, &[guide(&hot, &a)]), &params).unwrap());

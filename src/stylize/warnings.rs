@@ -36,8 +36,8 @@ pub const MAX_AMBIGUOUS: f64 = 0.18;
 pub const MAX_BLEMISH: f64 = 13.0;
 
 impl Report {
-    /// Returns the reasons to doubt the exemplar and the light of the target. In a half-painted picture, the exemplar
-    /// is the painted part. Places are in pixels of the full size, in previews too.
+    /// Returns warnings about defects of the exemplar, and about light of the target that the exemplar lacks. In a
+    /// half-painted picture, the exemplar is the painted part. Places are in pixels of the full size, in previews too.
     pub fn warnings(&self, is_half_painted: bool) -> Vec<Warning> {
         let light = light_not_painted(&self.lack, is_half_painted);
         let all = light.into_iter().chain(ambiguous_paint(&self.doubts)).chain(blemish(&self.doubts));

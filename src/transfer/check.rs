@@ -11,8 +11,8 @@ impl Transfer {
     /// Checks a run of the stages `from..=to`; takes negligible time.
     ///
     /// # Errors
-    /// `InvalidArgument` if `from` comes after `to` or for settings out of range, `InvalidOperation` for missing inputs
-    /// or results.
+    /// - `InvalidArgument`: `from` comes after `to`, or a setting is out of range.
+    /// - `InvalidOperation`: an input or an earlier result is missing.
     pub fn check(&self, from: Stage, to: Stage) -> Result<()> {
         if from > to {
             return Err(Error::argument(format!("the run is from stage {from:?} to {to:?}; it must go forwards")));

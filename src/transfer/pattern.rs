@@ -14,7 +14,7 @@ pub struct Pattern {
     pub texel_size: f64,
     /// Rotation of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
     pub rotation: f64,
-    /// Shift of the pattern along its own axes in metres, each in `[-1e6, 1e6]`.
+    /// Shift of the pattern along its own axes in metres, each component in `[-1e6, 1e6]`.
     pub offset: DVec2,
     /// Minimum distance in metres, in `[-1, 1e6]`, between a lamp and the surface's edge or a keep-out zone
     /// ([`super::Input::zones`]). Lamps that are closer are removed. If the margin is negative, lamps may cross the

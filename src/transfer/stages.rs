@@ -86,9 +86,9 @@ impl Transfer {
         self.enlarge_room(job.part(0.6, 1.0))
     }
 
-    /// Replaces the view by a view in which all lamps have the same size and shape. Does so only if the photo's lines
-    /// do not determine the view, the caller has not set it, and the lamps fit the new view clearly better. Returns
-    /// whether the view was replaced.
+    /// Replaces the view by a view in which all lamps, once unwarped, have the same size and shape. Does so only if the
+    /// photo's lines do not determine the view, the caller has not set it, and the lamps fit the new view clearly
+    /// better. Returns whether the view was replaced.
     fn correct_view(&mut self, job: Job) -> Result<bool> {
         let Results { view: Some(view), plane: Some(plane), lights: Some(lights), .. } = &self.results else {
             return Ok(false);
@@ -143,8 +143,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// The room axes along the face of the room's layout that holds the plane. `None` if there is no layout, or if the
-    /// plane lies on several faces.
+    /// Indices of the two room axes along the face of the room's layout that holds the plane. `None` if there is no
+    /// layout, or if the plane lies on several faces.
     fn laid_out_axes(&self) -> Option<[usize; 2]> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), .. } = &self.results else {
             return None;

@@ -15,12 +15,12 @@ pub struct Canvas {
     /// Surface texture in `[0, 1]`. Ink ([`Self::spot`]) covers best where this value is high; a dry brush
     /// ([`Self::touch`]) covers best where it is low.
     tooth: Vec<f32>,
-    /// Thickness of the paint, which is lit as a relief.
+    /// Thickness of the paint, in arbitrary units. It is lit as a relief.
     relief: Vec<f32>,
 }
 
 impl Canvas {
-    /// Creates paper of a colour, with fibres and cloudy variations.
+    /// Creates paper of a colour, which fibres, grain and clouds vary slightly.
     pub fn paper(width: usize, height: usize, colour: Vec3, seed: u64) -> Result<Self> {
         let mut canvas = Self {
             width,

@@ -24,8 +24,8 @@ struct Set {
     ink: Vec3,
 }
 
-/// Returns the drawing weight of places darker than `tone`: 0 at this tone, 1 where the tone is lower by 0.25. The
-/// weight of a highlight is 0.
+/// Returns the drawing weight of places darker than `tone`: 0 at this tone, 1 at tones lower by 0.25, negative at
+/// lighter tones. The weight of a highlight is 0.
 fn below(appearance: &Appearance, tone: f32) -> f32 {
     // Leave highlights blank, however dark they are.
     if appearance.shine > 0.6 { 0.0 } else { (tone - appearance.tone) * 4.0 }
@@ -136,8 +136,8 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
         if (set.weight)(subject.at(start)) <= 0.05 || drawn.is_near(start, keep, line) {
             continue;
         }
-        // Trace the line from its start in both directions. Stop at the edge of the object, where the drawing weight is
-        // 0, near another line, or at half the length.
+        // Trace the line from its start in both directions. Stop each way at the edge of the object, at a place whose
+        // drawing weight is 0, near another line, or after half the line's length.
         let lean = set.turn + 0.10 * (rng.next_f32() - 0.5);
         let half_length = set.length * unit * (0.35 + 0.65 * rng.next_f32()) / 2.0;
         let mut ends = [Vec::new(), Vec::new()];

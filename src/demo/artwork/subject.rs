@@ -14,13 +14,14 @@ const TABLE: Vec2 = Vec2::new(0.97, -0.24);
 /// How the artist sees one pixel of the picture.
 #[derive(Clone, Copy)]
 pub struct Appearance {
-    /// Lightness of all light together, in `[0, 1]`.
+    /// Lightness of all light together: its luminance after exposure, sRGB-encoded, in `[0, 1]`.
     pub tone: f32,
     /// Lightness of the direct light, in `[0, 1]`.
     pub lit: f32,
     /// Lightness of the highlight (specular light), in `[0, 1]`.
     pub shine: f32,
-    /// Redness of the indirect light, which other objects have reflected onto this pixel.
+    /// Redness of the indirect light, which other objects have reflected onto this pixel's surface. After exposure, it
+    /// is red minus the mean of green and blue, at least 0.
     pub bleed: f32,
     /// Whether the pixel shows an object, as opposed to table or wall.
     pub is_object: bool,

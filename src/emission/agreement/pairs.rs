@@ -4,8 +4,8 @@
 use super::statistics::nearest_distances;
 use glam::DVec2;
 
-/// Only pairs of points up to this distance apart are compared. It is a multiple of the mean distance between nearest
-/// neighbours. [convention: part of the definition of this statistic]
+/// Maximum distance between the two points of a pair that is compared, as a multiple of the mean distance between
+/// nearest neighbours. [convention: part of the definition of this statistic]
 const MAX_DISTANCE: f64 = 2.5;
 /// Half width of the Epanechnikov kernel that smooths the distances, as a multiple of the mean distance between nearest
 /// neighbours. Stoyan and Stoyan recommend 0.15 / √λ for a density of λ points per area; on a square lattice, 1 / √λ is
@@ -21,15 +21,15 @@ pub struct Points<'a> {
     pub size: DVec2,
 }
 
-/// Difference between two patterns in the distances between their points: ½ Σ |p(r) - q(r)|. Here p(r) and q(r) are
-/// the shares of the pairs of each pattern that lie at the distance r; the sum runs over r up to `MAX_DISTANCE`. The
+/// Difference between two patterns in the distances between their points: ½ Σ |p(r) - q(r)|. Here p(r) and q(r) are the
+/// shares of the pairs of each pattern that lie at the distance r; the sum runs over r up to `MAX_DISTANCE`. The
 /// difference is 0 if p = q, and 1 if the patterns have no distance in common. `None` if a pattern has no pair of
 /// points within `MAX_DISTANCE`.
 ///
-/// In a window of w × h, a pair with the offset (x, y) has the weight 1 / ((w - |x|) (h - |y|)), because fewer pairs
-/// with a large offset fit into the window (translation correction, Ohser 1983). A kernel spreads each pair over
-/// neighbouring distances (Stoyan and Stoyan 1994). `MAX_DISTANCE` and the kernel's width are multiples of the mean
-/// distance between nearest neighbours in the first pattern, `of`.
+/// In a window of w × h, a pair with the offset (x, y) has the weight 1 / ((w - |x|) (h - |y|)). The weight makes up
+/// for the fact that fewer pairs with a large offset fit into the window (translation correction, Ohser 1983). A kernel
+/// spreads each pair over neighbouring distances (Stoyan and Stoyan 1994). `MAX_DISTANCE` and the kernel's width are
+/// multiples of the mean distance between nearest neighbours in the first pattern, `of`.
 pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     let nearest = nearest_distances(of.at);
     let spacing = nearest.iter().sum::<f64>() / nearest.len() as f64;

@@ -17,8 +17,9 @@ use glam::DVec2;
 const PARTS: usize = 6;
 
 /// Returns the sampling error of the statistics as a relative difference. Each of several parts of the texture, as
-/// large as the exemplar, is compared with the whole texture (`whole`) by [`Statistics::difference`]. The result is
-/// the root mean square of these differences. `None` if the texture is too small for clearly different parts.
+/// large as the exemplar, is compared with the whole texture (`whole`) by [`Statistics::difference`]. The result is the
+/// root mean square of these differences. `None` if the texture is smaller than the exemplar, or exceeds it along both
+/// axes by less than half of the exemplar's shorter side: its parts would then hardly differ.
 ///
 /// `scale` is the number of unwarped pixels per texel. `periods` are the periods along x and y in unwarped pixels.
 pub fn error(

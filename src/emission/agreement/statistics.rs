@@ -3,9 +3,10 @@
 //! The border of the image cuts the pattern at an arbitrary place. Plain means would therefore depend on the lamps that
 //! happen to lie at the border, above all if there are few lamps. So every mean is weighted by position:
 //!
-//! - Along an axis with a known period, imagine a window of as many whole periods as fit into the image, which slides
-//!   from one border to the other. The weight of a position is the share of the window's placements that contain it.
-//!   Each part of the period then has the same total weight, wherever the border cuts the pattern.
+//! - Along an axis with a known period, imagine a window that slides from one border of the image to the other. Its
+//!   length is the largest whole number of periods that fits into the image. The weight of a position is the share of
+//!   the window's placements that contain it. Each part of the period then has the same total weight, wherever the
+//!   border cuts the pattern.
 //! - Along other axes, the weights are a Hann window, which falls to 0 at the border (Harris 1978).
 
 use crate::emission::exemplar::components::Components;
@@ -73,8 +74,8 @@ impl Statistics {
             let weights: f64 = counted().map(|i| place(lamps[i].0)).sum();
             ratio(counted().map(|i| place(lamps[i].0) * value(i)).sum(), weights)
         };
-        // If a cut lamp is nearer than the nearest whole lamp, the distance to the nearest lamp is unknown, because
-        // the true centre of the cut lamp is unknown.
+        // If a cut lamp is nearer than the nearest whole lamp, the distance to the nearest lamp is unknown: the centre
+        // of the cut lamp's visible part is not the lamp's centre.
         let cut = components.list.iter().zip(*whole).filter(|(_, whole)| !**whole).map(|(c, _)| c.centre);
         let mut centres: Vec<DVec2> = lamps.iter().map(|l| l.0).collect();
         let nearest = nearest_distances(&centres);
@@ -115,7 +116,8 @@ impl Statistics {
         Self { area: self.area * scale * scale, spacing: self.spacing * scale, ..self }
     }
 
-    /// The statistics after the area of each lamp is multiplied by `ratio`.
+    /// The statistics after the area of each lamp is multiplied by `ratio`. The lit share is multiplied as well, up to
+    /// 1.
     pub fn with_area(self, ratio: f64) -> Self {
         Self { lit: (self.lit * ratio).min(1.0), area: self.area * ratio, ..self }
     }

@@ -22,7 +22,7 @@ pub struct Evidence {
     /// the number of photo pixels of the visible part. Always empty for a luminous ceiling, because it is not known at
     /// which bar a cut pane would end.
     pub completed: Vec<MeasuredLamp>,
-    /// The visible parts of the other lamps that the border cuts.
+    /// The visible parts of the lamps that the border cuts and whose size is unknown.
     pub parts: Vec<MeasuredLamp>,
 }
 
@@ -60,8 +60,8 @@ fn complete(exemplar: &Exemplar, part: &MeasuredLamp, whole: &[MeasuredLamp]) ->
         return None;
     }
 
-    // Find a whole lamp that is about as long as the part along the axes that are not cut, and at least as long as the
-    // part along the cut axes.
+    // Find a whole lamp to which the part may be equal. Along an axis that is not cut, the lamp must be about as long
+    // as the part; along a cut axis, at least about as long.
     let is_cut = cut_low | cut_high;
     let size = whole.iter().find_map(|other| {
         let size = DVec2::select(is_cut, part.size.max(other.size), part.size);

@@ -25,8 +25,9 @@ use sites::Sites;
 /// Unwarping magnifies such a part at most this many times as much as the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
 /// Limits for shifts that are proposed as periods. `MIN_CORRELATION`: minimum autocorrelation of the lights at the
-/// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of the autocorrelation at the shift to the highest one at any
-/// shift, less an allowance for chance. `MAX_SHIFTS`: maximum number of shifts. [judged on 20 photos]
+/// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of the autocorrelation at the shift to that of the best shift. The
+/// latter is lowered by its error, as in [`lattice::shifts`]. `MAX_SHIFTS`: maximum number of shifts.
+/// [judged on 20 photos]
 const MIN_CORRELATION: f32 = 0.35;
 const MIN_RELATIVE_CORRELATION: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
@@ -41,8 +42,8 @@ const CLEAR_MARGIN: f64 = 0.1;
 /// Let w be the number of photo pixels that show whole lamps, and t the number that show lights running through the
 /// photo. Laws are compared only if w / (w + t) is at least this. [judged on 20 photos]
 const MIN_LAMP_SHARE: f64 = 0.5;
-/// Two lattices or rows count as equal if each period of one differs from a period of the other by less than this share
-/// of the longer of the two periods. [judged on 20 photos]
+/// Two lattices or rows count as equal if their periods agree in pairs: the two periods of a pair differ by less than
+/// this share of the longer one. [judged on 20 photos]
 const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
 
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
@@ -192,14 +193,14 @@ impl Analysis {
         proposals.iter_mut().for_each(|p| *p = p.aligned(exemplar, score));
 
         // Find the proposal that ranks highest, the first one among equals. It replaces the law found in the whole
-        // exemplar only if its score is clearly higher than that of this law, and higher than that of a law without a
-        // period.
+        // exemplar only under two conditions: its score is clearly higher than the score of that law, and higher than
+        // the score of a law without a period.
         let rank = |p: &Proposal| p.rank(exemplar);
         let best = proposals.iter().fold(own, |best, p| if rank(p) > rank(&best) + 1e-9 { *p } else { best });
         let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
         let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
-        // For the panes of a luminous ceiling, prefer the best lattice if two conditions hold. It scores clearly higher
-        // than a law without a period, and no other law scores clearly higher than the lattice.
+        // For the panes of a luminous ceiling, prefer the best lattice if two conditions hold. The lattice scores
+        // clearly higher than a law without a period, and no other law scores clearly higher than the lattice.
         let panes = lattice.filter(|p| {
             exemplar.is_luminous_ceiling()
                 && p.score > SCORE_WITHOUT_PERIOD + CLEAR_MARGIN
@@ -223,9 +224,9 @@ impl Analysis {
         Ok(())
     }
 
-    /// Proposes laws from the whole exemplar and from each of its sharper parts: one with the threshold
-    /// `min_regularity`, and several rows and lattices with looser thresholds. Also proposes lattices and rows along
-    /// the axes from the distances between lamps.
+    /// Proposes laws. From the whole exemplar, and from each of its sharper parts, come one law with the threshold
+    /// `min_regularity`, and several rows and lattices with looser thresholds. Further lattices and rows along the axes
+    /// come from the distances between lamps.
     fn propose(&self, evidence: &Evidence, whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
@@ -294,8 +295,8 @@ impl Analysis {
 }
 
 /// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. Laws without a period have
-/// a fixed score. NaN if the pattern does not change along one period of the law (lines of light do not change along
-/// their length), because only the autocorrelation can judge such a period.
+/// a fixed score. NaN if the pattern does not change along one period of the law, for example along the length of lines
+/// of light. Only the autocorrelation can judge such a period.
 fn score(exemplar: &Exemplar, evidence: &Evidence, law: Law) -> f64 {
     match Sites::new(exemplar, &evidence.whole, law) {
         Some(sites) => sites.score(evidence),

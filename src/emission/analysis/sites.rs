@@ -29,8 +29,8 @@ const MAX_SITES: usize = 20_000;
 /// A site: a position in the lattice cell at which lamps lie.
 #[derive(Clone, Debug)]
 pub struct Site {
-    /// Position of the site in unwarped pixels: the mean position of its lamps, after each is moved by whole periods
-    /// next to the first lamp.
+    /// Position of the site in unwarped pixels: the mean position of its lamps, weighted by their photo pixels, after
+    /// each lamp is moved by whole periods next to the first one.
     pub at: DVec2,
     /// The lamps at this site, sorted by their number of photo pixels, largest first.
     pub lamps: Vec<MeasuredLamp>,
@@ -169,8 +169,8 @@ impl Sites {
         };
         let (shining, dark): (Vec<DVec2>, Vec<DVec2>) = empty.into_iter().partition(shines);
 
-        // A dark position is a hole if it lies between the first and the last lamp along both periods. Beyond them, it
-        // ends the pattern on that side.
+        // A dark position is a hole if it lies between the first and the last lamp along both periods. A dark position
+        // before the first or after the last lamp along a period ends the pattern on that side.
         let lit = lamps.iter().map(|l| l.centre).chain(shining.iter().copied()).map(|p| self.cell(at, p));
         let (low, high) = lit.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), c| (a.min(c), b.max(c)));
         let mut cells = [DVec2::NEG_INFINITY, DVec2::INFINITY];
@@ -236,8 +236,9 @@ impl Sites {
     /// - A: photo pixels of all lamps, and of lamps that a site with at least two lamps predicts but that are missing.
     /// - s: number of sites; n: number of lamps. No other lamp predicts the first lamp of a site.
     ///
-    /// A cut lamp is predicted if whole steps from a site lead to its centre or, if its size is not known, to any place
-    /// on its visible part. A cut lamp counts in n only if its size is known and it is predicted.
+    /// A cut lamp of known size is predicted if whole steps from a site lead to its centre. A cut lamp of unknown size
+    /// is predicted if they lead to any place on its visible part. A cut lamp counts in n only if its size is known and
+    /// it is predicted.
     pub fn score(&self, evidence: &Evidence) -> f64 {
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {
             true => (predicted + site.shown, all + site.shown + site.missing),

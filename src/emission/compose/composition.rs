@@ -89,8 +89,8 @@ impl Composition {
         self.layers.first().map_or(0.0, |layer| layer.regularity)
     }
 
-    /// How the lights of the first exemplar continue (on a lattice, in a row, by repetition or without a period). Also
-    /// returns how well this law predicts the lamps, and the best alternative.
+    /// The law by which the lights of the first exemplar continue: a lattice, a row, repetition or no period. Also
+    /// returns how well the law predicts the lamps, and the best alternative.
     pub fn law(&self) -> (Law, Choice) {
         let first = self.layers.first().map(|layer| (layer.law, layer.choice));
         first.unwrap_or((Law::Copy, Choice::only(Law::Copy)))

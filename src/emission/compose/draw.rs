@@ -28,8 +28,8 @@ use std::collections::HashMap;
 /// Where lamps are dense, all lamps in one square of the texture share a random number. This is the square's side, as
 /// a multiple of the longest lamp's length. [origin not recorded]
 const SHARED_SQUARE: f64 = 3.0;
-/// Lamps are dense if, of the lamps of the second and all further exemplars, more than this share overlap two or more
-/// lamps of earlier exemplars. [origin not recorded]
+/// Consider the lamps of the second and all further exemplars. Lamps are dense if more than this share of them overlap
+/// two or more lamps of earlier exemplars. [origin not recorded]
 const MIN_DENSE_SHARE: f64 = 0.1;
 
 /// A lamp of an exemplar: its bounding box in texels, and its random number.
@@ -46,7 +46,8 @@ impl Lamp {
         (self.low + self.high) / 2.0
     }
 
-    /// Area, in texels, of the intersection of both boxes after `other` is moved by `shift`.
+    /// Area, in texels, of the intersection of this lamp's box with the box of `other` after the latter is moved by
+    /// `shift`.
     fn overlap(&self, other: &Self, shift: DVec2) -> f64 {
         let sides = self.high.min(other.high + shift) - self.low.max(other.low + shift);
         sides.max(DVec2::ZERO).element_product()

@@ -43,8 +43,8 @@ pub struct Layer {
     pub law: Law,
     pub regularity: f64,
     pub choice: Choice,
-    /// Metadata of the exemplar at working size (the reduced size of the synthesis): confidence, and signed x and y
-    /// distance to the nearest light.
+    /// Metadata of the exemplar at working size (the reduced size of the synthesis): the confidence, and the x and y
+    /// offset to the nearest light, in units of `PatternPlacement::cap`, clamped to `[-1, 1]`.
     pub metadata: Image,
     pub patch_map: PatchMap,
     /// Lamps that are copied as a whole, each with its shift from the exemplar to the texture.
@@ -372,8 +372,9 @@ impl<'a> PatternPlacement<'a> {
         })
     }
 
-    /// The sites of the lattice at which lamps are placed exactly. `None` if the law has no sites, for a row that ends
-    /// within the exemplar, and if no lamp has a design. The panes of a luminous ceiling need no design.
+    /// The sites of the lattice at which lamps are placed exactly. `None` in three cases: the law has no sites; it is a
+    /// row that ends within the exemplar; or no lamp has a design. Panes of a luminous ceiling need no design if
+    /// `params.clean_lamps` is set and the exemplar has a photo.
     fn sites(&self, exemplar: &Exemplar, designs: &Designs) -> Option<Sites> {
         let ends = match self.law {
             Law::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
@@ -455,8 +456,8 @@ fn shifted(mut lamps: Vec<Instance>, by_patches: bool, params: &Params) -> Resul
 }
 
 /// Default side of a patch in working pixels, large enough for a lamp and parts of its neighbours. On a lattice, it is
-/// one and a half times the longer period; otherwise a quarter of the exemplar's shorter side. It is at least
-/// [`MIN_BLOCK`], and at most half of the exemplar's shorter side.
+/// one and a half times the longer period; otherwise a quarter of the exemplar's shorter side. It is at most half of
+/// the exemplar's shorter side, but never below [`MIN_BLOCK`].
 fn default_block(exemplar: &Exemplar, law: Law) -> usize {
     let working = &exemplar.working;
     let quarter = working.width.min(working.height) as f64 / 4.0;

@@ -166,7 +166,7 @@ impl Light {
         }
     }
 
-    /// Merges the last span into the one before if it lies directly below it and covers the same columns.
+    /// If the last two spans cover the same columns, and the last one lies directly below the other, merges them.
     fn close(&mut self) {
         if let [.., before, last] = &mut self.spans[..]
             && (before.left, before.right, before.row + before.rows) == (last.left, last.right, last.row)

@@ -117,8 +117,8 @@ impl Row<'_> {
         }
     }
 
-    /// Adds to the row the lights of exemplar `k` that the patches copy pixel by pixel, weighted by its share of the
-    /// blend. Lamps that are placed as a whole are drawn elsewhere.
+    /// Adds to the row the lights of exemplar `k` that are copied patch by patch, multiplied by the weight of this
+    /// exemplar in the blend. [`Self::add_lamps`] adds the lamps that are placed as a whole.
     fn add_patches(&mut self, source: &TexelSource, blend: &Blend, k: usize) {
         let size = DVec2::new(blend.width as f64, blend.height as f64);
         for x in self.first..self.first + self.coverage.len() {

@@ -34,9 +34,9 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
     Ok(sums.iter().zip(&exemplar.components.list).map(|(sum, lamp)| (*sum / lamp.area as f64).as_vec3()).collect())
 }
 
-/// A lamp that is drawn from a design gets its colours from the inner part of the lamp in the photo only, because the
-/// rim of the lamp is blurred there. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum side of the inner
-/// part, as a share of the lamp's side. [judged on 20 photos]
+/// The colours of a lamp that is drawn from a design come from the inner part of the lamp in the photo. The photo blurs
+/// the rim of the lamp, so the rim is left out. `RIM`: width of the rim in photo pixels. `MIN_INNER`: minimum side of
+/// the inner part, as a share of the lamp's side. [judged on 20 photos]
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 
@@ -155,8 +155,8 @@ impl TexelSource<'_> {
     }
 
     /// The point of the exemplar at which the colour of a designed lamp is read in place of the point `p`. The result
-    /// is `p`, unless the border of the photo cuts the lamp and hides `p`. It is then the first visible point of the
-    /// lamp on the way from `p` to the centre of the visible part.
+    /// is `p`, unless the border of the photo cuts the lamp and hides `p`. In that case, the result is the first
+    /// visible point of the lamp on the way from `p` to the centre of the visible part.
     fn shown_point(&self, component: usize, p: DVec2) -> DVec2 {
         let exemplar = &self.layer.exemplar;
         if exemplar.roles[component] != Role::Partial {
@@ -170,7 +170,8 @@ impl TexelSource<'_> {
     }
 
     /// The mean colour of the light over a square with the centre `p`, from the photo. Where the photo does not show
-    /// the square, the unwarped image is interpolated at `p` instead. `lamp` is the label of the component at `p`.
+    /// the square, the unwarped image is interpolated at `p` instead, between those pixels of `taps` whose label
+    /// `is_shown` selects. `lamp` is the label of the component at `p`, whose clipped colours are replaced.
     fn colour(
         &self,
         p: DVec2,
@@ -211,7 +212,7 @@ impl TexelSource<'_> {
     }
 
     /// The share of an unwarped pixel that is covered by components for whose label `is_shown` returns true. Beside a
-    /// lamp, its confidence fades out over pixels that belong to no component. These pixels count whatever `is_shown`
+    /// lamp, the confidence fades out over pixels that belong to no component. These pixels count whatever `is_shown`
     /// selects.
     fn light(&self, pixel: usize, is_shown: &impl Fn(u32) -> bool) -> f32 {
         let label = self.label(pixel);

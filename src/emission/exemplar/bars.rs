@@ -154,7 +154,7 @@ impl<'a> Lines<'a> {
 
         // Find the bars, the deepest one first. `excess` is the depth of each position across the bars minus the median
         // depth of all positions. A bar extends from its deepest position to both sides as far as the excess is at
-        // least half as large as there.
+        // least half of the excess at the deepest position.
         let mut bars = Vec::new();
         while let Some((peak, &depth)) =
             excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).filter(|(_, d)| **d >= MIN_DEPTH)

@@ -32,7 +32,7 @@ impl LocalMap {
     }
 
     /// Length of a photo pixel in unwarped pixels, along x and along y. If an edge perpendicular to the axis moves by
-    /// one pixel in the photo, it moves by this length in the unwarped image.
+    /// one pixel in the photo, it moves by this length in the unwarped image. Infinite if the map has no inverse.
     pub fn photo_pixel(&self) -> DVec2 {
         let inverse = self.jacobian.inverse().transpose();
         let size = DVec2::new(inverse.x_axis.length(), inverse.y_axis.length());
@@ -40,8 +40,9 @@ impl LocalMap {
     }
 }
 
-/// The part of an unwarped image in which unwarping magnifies the photo by at most a given factor. Magnification is a
-/// ratio of lengths, relative to the least magnified pixel.
+/// The part of an unwarped image in which unwarping magnifies the photo by at most a given factor. The magnification at
+/// a point is a length in the unwarped image over the same length in the photo. The factor is relative to the
+/// magnification at the least magnified pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     to_photo: Homography,

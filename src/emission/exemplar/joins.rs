@@ -5,8 +5,8 @@
 //! cases:
 //!
 //! - A lamp in one piece is as large as both lights together.
-//! - Two lights elsewhere form an equal pair, narrow bars divide both pairs, and no light as large as one part lies
-//!   alone or in a longer row.
+//! - Two lights elsewhere form a pair of the same size, and a narrow bar divides each of the two pairs. No other light
+//!   as large as one part lies alone or in a row of three or more.
 
 use super::bars::LitPlane;
 use super::components::{self, Component, Components};
@@ -17,17 +17,20 @@ use crate::error::Result;
 use crate::image::{Image, try_collect};
 use crate::job::Job;
 
-/// The dark strip between two parts of a lamp is at most this share of the lamp's side. [bench photos:real] shows no
-/// difference between 0.1 and 0.4.
+/// The dark strip between two parts of a lamp is at most this share of the lamp's side across the strip.
+/// [bench photos:real] shows no difference between 0.1 and 0.4.
 const MAX_STRIP: f64 = 0.2;
-/// Lights cover at least this share of the box around a lamp without the strip. A disc covers π/4 = 0.79 of its box,
-/// and a rectangle with frayed edges less than all of it. Ragged lights may be parts of anything. [convention]
+/// A light counts as rectangular if it covers at least this share of its bounding box. For two parts of a lamp, this is
+/// the box around both, without the strip between them. A disc covers only π/4 = 0.79 of its box; a rectangle with
+/// frayed edges covers more than this share. Lights that are not rectangular are not joined, because they could be
+/// parts of anything. [convention]
 const MIN_COVERED: f64 = 0.85;
-/// Images with more lights than this are left as they are: the search compares all pairs of lights, and halls of so
-/// many lamps show enough lamps in one piece. [convention]
+/// Images with more lights than this are left as they are. The search compares all pairs of lights, so its time grows
+/// with the square of their number. Of so many lamps, enough are in one piece to show the pattern. [convention]
 const MAX_LIGHTS: usize = 400;
 
-/// Returns the light mask with the strips inside lamps filled; `None` if no lamp consists of two parts.
+/// Returns the light mask with the strips inside lamps filled. `None` if no lamp consists of two parts, or if there are
+/// more than [`MAX_LIGHTS`] lights.
 pub fn join(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     let (width, height) = (plane.light.width, plane.light.height);
     let found = components::find(width, height, |i| plane.is_lit(i))?;
@@ -51,17 +54,17 @@ pub fn join(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
 struct Pair {
     /// The indices of the lights.
     parts: [usize; 2],
-    /// Both lights together.
+    /// Both lights together, measured as one lamp.
     both: MeasuredLamp,
-    /// The first and the last column and row between the parts.
+    /// The dark strip between the lights: `[first column, first row]` and `[last column, last row]`.
     strip: [[usize; 2]; 2],
-    /// Whether the strip is a narrow bar.
+    /// Whether the strip is a narrow bar: at most the share [`MAX_LEADING_SHARE`] of the pair's side across the strip.
     is_bar: bool,
 }
 
 struct Lights {
     sizes: Vec<MeasuredLamp>,
-    /// Whether each light is a whole, rectangular lamp, or looks like one.
+    /// Whether each light is rectangular ([`MIN_COVERED`]) and counts as whole, that is, the border does not cut it.
     is_lamp: Vec<bool>,
     pairs: Vec<Pair>,
     /// Number of pairs to which each light belongs.
@@ -99,7 +102,7 @@ impl Lights {
         })
     }
 
-    /// Whether the two lights of a pair are parts of one lamp.
+    /// Whether the two lights of a pair are parts of one lamp, by the two cases at the beginning of this file.
     fn are_one_lamp(&self, pair: &Pair) -> bool {
         let lamps = || (0..self.sizes.len()).filter(|k| self.is_lamp[*k] && !pair.parts.contains(k));
         if lamps().any(|k| self.sizes[k].is_as_large(&pair.both)) {
@@ -113,13 +116,13 @@ impl Lights {
     }
 }
 
-/// Whether a light covers the box around it like a rectangle; `strip` pixels of the box do not count.
+/// Whether a light is rectangular ([`MIN_COVERED`]); `strip` pixels of its bounding box do not count.
 fn is_rectangle(light: &Component, strip: usize) -> bool {
     let box_area: usize = light.size().iter().product();
     light.area as f64 >= MIN_COVERED * (box_area - strip) as f64
 }
 
-/// The component that covers two others.
+/// Two lights as one component.
 fn united(a: &Component, b: &Component) -> Component {
     let each = |pick: fn(usize, usize) -> usize, a: [usize; 2], b: [usize; 2]| [pick(a[0], b[0]), pick(a[1], b[1])];
     let (min, max) = (each(usize::min, a.min, b.min), each(usize::max, a.max, b.max));
@@ -127,9 +130,9 @@ fn united(a: &Component, b: &Component) -> Component {
     Component { area, centre: (a.centre * a.area as f64 + b.centre * b.area as f64) / area as f64, min, max }
 }
 
-/// The strip between two lights, as its first and its last column and row, and the share that it takes of the side of
-/// both together. `None` if the lights do not lie side by side like two parts of a lamp: they must begin and end at
-/// about the same positions along the strip.
+/// The strip between two lights ([`Pair::strip`]), and its width as a share of the pair's side across the strip. `None`
+/// if there is no strip, if it is wider than [`MAX_STRIP`], or if the lights do not begin and end at about the same
+/// positions along the strip.
 fn strip_between(a: &Component, b: &Component) -> Option<([[usize; 2]; 2], f64)> {
     (0..2).find_map(|across| {
         let along = 1 - across;
@@ -177,7 +180,7 @@ mod tests {
             assert_eq!(light.pixel(x, 64)[0], 1.0, "column {x}");
         }
         assert_eq!(light.data.iter().filter(|v| **v == 1.0).count(), 1600 + 44 * 16 + 42 * 15 + 14 * 15);
-        // Panes above and below a bar, beside a lamp of both panes.
+        // Two panes, above and below a bar. Beside them is a lamp as large as both panes and the bar.
         assert!(joined(&[[20, 20, 30, 28], [20, 51, 30, 28], [100, 20, 30, 59]]).is_some());
     }
 
@@ -194,16 +197,18 @@ mod tests {
     #[test]
     fn two_lamps_stay_two() {
         let lamp = [20, 20, 100, 16];
-        // No lamp is as large as both; the gap is wide; the lights are shifted against each other.
+        // In turn: no lamp is as large as both lights; the strip is too wide; the lights are shifted against each
+        // other.
         assert!(joined(&[[20, 60, 44, 16], [78, 60, 42, 16]]).is_none());
         assert!(joined(&[lamp, [20, 60, 30, 16], [90, 60, 30, 16]]).is_none());
         assert!(joined(&[lamp, [20, 60, 44, 16], [78, 68, 42, 16]]).is_none());
-        // A part and the lamp itself: no third lamp tells.
+        // A small light beside a lamp. No third light is as large as both together.
         assert!(joined(&[lamp, [124, 20, 20, 16]]).is_none());
-        // A row of three panels, twice: a row is no lamp.
+        // Two rows of three panels each, with narrow bars. The middle panel of a row forms pairs with both neighbours,
+        // so no pair counts as a lamp.
         let row = |y: usize| [20, 52, 84].map(|x| [x, y, 30, 30]);
         assert!(joined(&[row(10), row(70)].concat()).is_none());
-        // Two pairs beside a panel of the same size.
+        // Two equal pairs with narrow bars are two lamps, unless a single panel elsewhere is as large as one part.
         let pair = |x: usize| [[x, 10, 30, 30], [x + 32, 10, 30, 30]];
         assert!(joined(&[pair(10), pair(100)].concat()).is_some());
         assert!(joined(&[pair(10).to_vec(), pair(100).to_vec(), vec![[60, 70, 30, 30]]].concat()).is_none());

@@ -1,5 +1,5 @@
-//! Position and size of the lamps of an exemplar, as evidence for a lattice and for kinds of lamps, weighted by the
-//! number of photo pixels that show them.
+//! Position and size of the lamps of an exemplar. They are evidence for a lattice and for kinds of lamps. The weight of
+//! a lamp is the number of photo pixels that show it.
 
 use super::components::Component;
 use super::foreshortening::LocalMap;
@@ -61,14 +61,15 @@ impl MeasuredLamp {
         kinds
     }
 
-    /// Whether two lamps may have equal sizes, given their blur.
+    /// Whether two lamps may have equal sizes: each side differs by at most the share [`MAX_SIDE_DIFFERENCE`], plus an
+    /// allowance for measurement error and for bloom.
     pub fn is_like(&self, other: &Self) -> bool {
         let blur = (self.blur + other.blur) * NOISE / 2.0 + (self.blur - other.blur).abs() * BLOOM;
         let slack = self.size.max(other.size) * MAX_SIDE_DIFFERENCE + blur;
         (self.size - other.size).abs().cmple(slack).all()
     }
 
-    /// Whether two lamps have equal sizes, apart from errors of measurement.
+    /// Like [`Self::is_like`], but without the allowance for bloom.
     pub fn is_as_large(&self, other: &Self) -> bool {
         let slack = self.size.max(other.size) * MAX_SIDE_DIFFERENCE + (self.blur + other.blur) * NOISE / 2.0;
         (self.size - other.size).abs().cmple(slack).all()

@@ -45,8 +45,8 @@ pub struct Exemplar {
     pub roles: Vec<Role>,
     /// Number of photo pixels that show each component.
     pub photo_area: Vec<f64>,
-    /// Share of each component that is dark: darker than half of the component's median luminance. Dark are a thing in
-    /// front of the lamp, or a bar.
+    /// Share of each component that is dark: darker than half of the component's median luminance. Dark pixels show a
+    /// thing in front of the lamp, or a bar.
     pub dark_share: Vec<f64>,
     /// Share of the pixels marked in `shown` that is lit.
     pub lit_share: f64,

@@ -124,8 +124,9 @@ fn fill(cell: &Cell, light: &mut Image) {
     cell.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
 }
 
-/// Fills narrow gaps between lit pixels of a row or column. `start` is the index of its first pixel, `step` is the
-/// difference to the index of the next pixel, and `count` is the number of pixels.
+/// Fills the short gaps between lit pixels of a line: a row or a column of a cell. A gap is short if it takes at most
+/// the share [`MAX_LEADING_SHARE`] of the line. `start` is the index of the line's first pixel, `step` the difference
+/// to the index of the next pixel, and `count` the number of pixels.
 fn close(light: &mut Image, (start, step, count): (usize, usize, usize)) {
     let widest = (count as f64 * MAX_LEADING_SHARE) as usize;
     let mut last = None;

@@ -10,8 +10,8 @@ const MAX_CUT_RATIO: f64 = 1.35;
 /// cuts exceeds the limit. A disc does not exceed it as long as less than about a hundredth of its area is cut off.
 /// [judged on 5 photos]
 const MAX_WHOLE_CONTACT: f64 = 0.6;
-/// A light runs through the exemplar if it spans at least this share of the row or column through its centre, as far
-/// as the photo shows that row or column. [rounding]
+/// A light runs through the exemplar if it spans at least this share of the row or of the column through its centre.
+/// Only the part of the row or column that the photo shows is counted. [rounding]
 const MIN_THROUGH_SPAN: f64 = 0.97;
 
 /// The role of a component of the exemplar.
@@ -31,7 +31,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// Whether the component is a lamp that the photo shows completely, or that counts as such.
+    /// Whether the component is a lamp that the photo shows completely, or that counts as whole.
     pub fn is_whole(self) -> bool {
         matches!(self, Self::Whole | Self::WholeAtBorder)
     }

@@ -7,10 +7,10 @@ use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// The regions that [`Working::contrast`] compares for a given box. The inside is the box scaled by `INNER`. The
-/// surroundings are the box scaled by `OUTER`, without the box itself; both boxes are widened by one working pixel on
-/// each side. Of the surroundings, only dark pixels count: lights cover less than the share `UNLIT` of them.
-/// [judged on 20 photos]
+/// The regions that [`Working::contrast`] compares for a given box. The inside is the box scaled by `INNER`, at least
+/// one working pixel wide. The surroundings lie between the box and the box scaled by `OUTER`, after each of these two
+/// is widened by one working pixel on each side. Of the surroundings, only dark pixels count: lights cover less than
+/// the share `UNLIT` of them. [judged on 20 photos]
 const INNER: f64 = 0.6;
 const OUTER: f64 = 2.0;
 const UNLIT: f32 = 0.05;

@@ -1,12 +1,15 @@
-//! Bloom: the light that a lens spreads around a lamp. It adds about the same number of photo pixels to every side.
+//! Bloom: the light that a lens spreads around a lamp. It lengthens every side of a lamp by about the same number of
+//! photo pixels.
 
 use glam::{DMat2, DVec2};
 
-/// `SIDE_NOISE`: standard deviation of the error of a measured side, in photo pixels. Bloom moves each edge outwards by
-/// some photo pixels; `BLOOM` is the standard deviation of its prior, with mean 0. [judged on 20 photos]
+/// `SIDE_NOISE`: standard deviation of the error of a measured side. `BLOOM`: standard deviation of the prior of the
+/// bloom, the distance by which a lens moves each edge outwards; the prior has mean 0. Both in photo pixels.
+/// [judged on 20 photos]
 const SIDE_NOISE: f64 = 0.7;
 const BLOOM: f64 = 0.5;
-/// The wider prior `SHOWN_BLOOM`, in photo pixels, replaces `BLOOM` if the lamps show their bloom, which means:
+/// `SHOWN_BLOOM` is the standard deviation of a wider prior, in photo pixels. It replaces `BLOOM` if the lamps show
+/// their bloom, which means:
 ///
 /// - There are at least `MIN_BLOOM_LAMPS` lamps.
 /// - The estimated bloom is between 0 and `MAX_BLOOM` photo pixels.
@@ -27,6 +30,8 @@ const MIN_SIDE: f64 = 0.35;
 ///   prior [`SHOWN_BLOOM`].
 /// - Otherwise it is estimated with the narrow prior [`BLOOM`]. If this estimate is not above 0, or if there is only
 ///   one lamp, the result is the mean measured side.
+///
+/// `None` if there is no lamp.
 pub fn common_side(sides: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let fit = BloomFit::new(sides);
     let shown = if fit.count >= MIN_BLOOM_LAMPS { fit.shown() } else { None };

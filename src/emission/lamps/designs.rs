@@ -112,7 +112,8 @@ fn judges(members: &[Member]) -> Vec<&Member> {
     if clear.is_empty() { members.iter().collect() } else { clear }
 }
 
-/// Fits a rectangle or an ellipse to the lamps of a kind; `None` if neither agrees with them.
+/// Fits a rectangle or an ellipse to the lamps of a kind; `None` if neither agrees with them. The design is a disc if
+/// the lamps are discs that only look long ([`discs::disc`]).
 pub fn fit(members: &[Member]) -> Option<Design> {
     let judges = judges(members);
     let total: f64 = judges.iter().map(|m| m.weight).sum();

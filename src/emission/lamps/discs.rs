@@ -6,7 +6,7 @@ use crate::emission::exemplar::measured_lamp::MAX_SITE_DIFFERENCE;
 use glam::DVec2;
 
 /// Limits for discs that blur has elongated. [judged on 20 photos]
-/// - `MAX_SMEARED`: lamps with a larger mean area, in photo pixels, need other evidence ([`disc`]).
+/// - `MAX_SMEARED`: lamps with a larger mean area, in photo pixels, do not count as small in [`disc`].
 /// - `MIN_SMEAR`: the long axis must exceed the short axis by this factor, both for the lamp and for a photo pixel in
 ///   the unwarped photo.
 /// - `MIN_COS_ALONG`: minimum cosine of the angle between the long axes of the lamp and of the photo pixel.
@@ -18,8 +18,8 @@ const MIN_COS_ALONG: f64 = 0.9;
 /// elongated along their own blur, but not in a common direction, are discs, whatever their size. [judged on 20 photos]
 const MIN_COMMON_DIRECTION: f64 = 0.93;
 
-/// Whether blur may have elongated a lamp: the lamp is elongated in the unwarped photo, a photo pixel is too, and their
-/// long axes differ by at most the angle with the cosine `min_cos`.
+/// Whether blur may have elongated a lamp: both the lamp and a photo pixel are elongated in the unwarped photo
+/// ([`MIN_SMEAR`]), and the cosine of the angle between their long axes exceeds `min_cos`.
 fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
     let [[short, x], [long, y]] = principal(lamp.moments);
     let [[minor, u], [major, v]] = principal(lamp.inverse_map * lamp.inverse_map.transpose());
@@ -27,20 +27,26 @@ fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
     long > MIN_SMEAR * short && major > MIN_SMEAR * minor && along > min_cos
 }
 
-/// Takes the lamps that protrude from the plane out of their kinds, and groups them anew by their widths.
+/// Takes the lamps that protrude from the plane out of `kinds`, and returns them in groups of similar width.
 ///
-/// Unwarping projects a body that hangs below the plane, and its glare, away from the foot of the perpendicular from
-/// the camera to the plane. It also stretches photo pixels in this direction. Protruding lamps therefore point away
-/// from one point, and the lower they hang, the longer they look. Kinds of lamps protrude if they point in this
-/// direction to within [`MAX_ALIGNED_ANGLE`], and if their lamps are not parallel. One lamp alone gives no evidence,
-/// nor do lamps in one line with the camera, such as a continuous row of tubes. Kinds that are as wide as one of these
-/// protrude as well if they point in this direction to within [`MIN_COS_ALONG`].
+/// Unwarping projects a body that hangs below the plane, and its glare, away from one point: the foot of the
+/// perpendicular from the camera to the plane. It also stretches photo pixels away from this point. So the long axis of
+/// a protruding lamp is parallel to that of a photo pixel there. The lower the lamp hangs, the longer it looks.
+///
+/// - A kind protrudes if blur may have elongated each of its lamps ([`is_smeared`]), with an angle of at most
+///   [`MAX_ALIGNED_ANGLE`] between the two long axes.
+/// - If all these lamps are parallel, none counts as protruding. This excludes a single lamp, and lamps in one line
+///   with the camera, such as a continuous row of tubes.
+/// - A further kind protrudes if each of its lamps is about as wide as one of those lamps, and if the angles are
+///   larger, but have cosines above [`MIN_COS_ALONG`].
 pub fn take_protruding(kinds: &mut Vec<Vec<Member>>) -> Vec<Vec<Member>> {
     let points_away = |kind: &Vec<Member>, min_cos: f64| kind.iter().all(|lamp| is_smeared(lamp, min_cos));
     let certain: Vec<&Member> =
         kinds.iter().filter(|kind| points_away(kind, MAX_ALIGNED_ANGLE.cos())).flatten().collect();
     let turns: DVec2 = certain.iter().map(|lamp| double_angle(lamp)).sum();
-    // The mean of unit vectors at twice the angles, whose angles deviate by 2σ, has the length exp(-(2σ)² / 2).
+    // Let the angles of the lamps deviate from their mean with the standard deviation σ = `MAX_ALIGNED_ANGLE`. Then the
+    // mean of the unit vectors at twice the angles has the length exp(-(2σ)² / 2). Lamps with a longer mean vector are
+    // parallel.
     let parallel = (-2.0 * MAX_ALIGNED_ANGLE.powi(2)).exp();
     if certain.is_empty() || turns.length() > parallel * certain.len() as f64 {
         return Vec::new();
@@ -68,7 +74,8 @@ fn are_alike(a: f64, b: f64) -> bool {
     (a - b).abs() <= MAX_SITE_DIFFERENCE * a.max(b)
 }
 
-/// The common diameter of lamps that are as wide as they should be long, without bloom, in unwarped pixels.
+/// The common diameter of discs, without bloom, in unwarped pixels. It is estimated from the widths of the lamps,
+/// because bloom and protrusion act mainly on their lengths.
 pub fn diameter(members: &[&Member]) -> Option<f64> {
     common_side(members.iter().map(|lamp| width(lamp)))
 }
@@ -101,7 +108,7 @@ fn double_angle(lamp: &Member) -> DVec2 {
 ///
 /// - They are round. Lamps are rarely oval, but a disc looks oval if it blooms, or if its cover protrudes from the
 ///   ceiling.
-/// - They are small in the photo.
+/// - They are small in the photo ([`MAX_SMEARED`]).
 /// - They are not all elongated in one common direction.
 ///
 /// The diameter of these lamps follows from their short sides if bloom does not explain the sides.
@@ -208,7 +215,8 @@ mod tests {
         let spot = |k: usize, length: f64, angle: f64| long_lamp(k, DVec2::new(length, 22.0), angle, angle + 0.03);
         let spots = || [(90.0, 1.2), (120.0, 1.5), (70.0, 1.9)].into_iter().enumerate();
         let mut kinds: Vec<Vec<Member>> = spots().map(|(k, (length, angle))| vec![spot(k, length, angle)]).collect();
-        // A spot whose direction is 15 degrees off, and a row of tubes, one of which lies in line with the camera.
+        // Add a spot whose long axis is 15 degrees off the direction away from the camera. Also add a row of parallel
+        // tubes, of which only the last points away from the camera.
         kinds.push(vec![long_lamp(3, DVec2::new(60.0, 20.0), 1.4, 1.66)]);
         kinds
             .push([0.4, 0.9, 1.55].into_iter().map(|away| long_lamp(4, DVec2::new(140.0, 30.0), 1.57, away)).collect());

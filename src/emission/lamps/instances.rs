@@ -21,7 +21,8 @@ use std::collections::BTreeMap;
 /// A lamp is placed only if patches that have the same shift copy at least this share of it. [origin not recorded]
 const MIN_SHARE: f64 = 0.3;
 /// On a lattice, a lamp is placed if other lamps occupy at most this share of its pixels. Lattice lamps overlap only
-/// through rounding. [origin not recorded]
+/// through rounding: shifts are rounded by up to half a pixel, so two lamps overlap by at most one row or column. This
+/// is 0.2 of a lamp that is five pixels wide. A lamp that is placed twice overlaps almost completely. [rounding]
 const MAX_LATTICE_OVERLAP: f64 = 0.2;
 
 /// How lamps are placed in a texture.
@@ -69,8 +70,8 @@ impl PatchLamps<'_> {
         self.footprints[k as usize].iter().filter_map(move |&[x, y]| self.texel(x + dx, y + dy))
     }
 
-    /// Finds the pairs of a lamp and a shift for which the patch map copies at least the share `MIN_SHARE` of the lamp
-    /// by this shift. If the texture's border cuts the shifted lamp, the share is relative to the part within the
+    /// Finds the pairs of a lamp and a shift such that the patch map copies at least the share `MIN_SHARE` of the lamp
+    /// with this shift. If the texture's border cuts the shifted lamp, the share is relative to the part within the
     /// texture. Each entry holds the copied share, the index of the lamp, and the label of the shift. The largest share
     /// comes first.
     fn claims(&self, exemplar_height: usize, job: Job) -> Result<Vec<(f64, u32, u32)>> {
@@ -134,8 +135,9 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
     let inverse = DMat2::from_cols(a, b).inverse();
     let mut instances = Vec::new();
     for (component, lamp) in exemplar.pieces() {
-        // Find the range of shifts for which the lamp lies at least partly in the texture or, in a tileable texture,
-        // the range in which the repetition begins in the texture. Then find the lattice positions in this range.
+        // Find the range of shifts with which the lamp lies at least partly in the texture. In a tileable texture, find
+        // instead the range of shifts with which the repetition begins in the texture. Then find the lattice positions
+        // in this range.
         let (first, last) = lamp.bounds();
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-last, size - first) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {

@@ -15,7 +15,8 @@ use std::collections::BTreeMap;
 /// Maximum relative difference in area, and in each side, between two lamps of one kind. [origin not recorded]
 const MAX_DIFFERENCE: f64 = 0.25;
 /// A lamp fills a share of its smallest enclosing rectangle. Between two lamps of one kind, this share differs by at
-/// most this value. [origin not recorded]
+/// most this value. It is about half the difference between a square and a disc, 1 - π/4 = 0.21: from 0.21 on, they
+/// would be one kind. The errors of outlines are allowed for by [`ROUNDING`]. [convention]
 const MAX_FILL_DIFFERENCE: f64 = 0.1;
 /// Maximum difference, in texels, between the measured sides of two equal lamps. The sides differ because outlines are
 /// rounded to texels and simplified. [rounding]

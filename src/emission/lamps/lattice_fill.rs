@@ -28,11 +28,11 @@ const MIN_OCCUPANCY: f64 = 0.93;
 /// [judged on 20 photos]
 const MIN_OCCUPANCY_FEW_DARK: f64 = 0.5;
 const MAX_FEW_DARK: usize = 2;
-/// A lamp counts as sharp if the number of photo pixels that show it is at least this share of the largest number among
-/// the lamps of its site. [judged on 5 photos]
+/// A lamp counts as sharp if the number of its photo pixels is at least this share of the largest such number at its
+/// site. [judged on 5 photos]
 const MIN_SHARP_SHARE: f64 = 0.4;
 /// A position belongs to a site if its distance from the site, along x and along y, is at most this share of the width
-/// or height of the site's lamp. [judged on 20 photos]
+/// or height of the site's first lamp. [judged on 20 photos]
 const OVERLAP: f64 = 0.5;
 
 /// Places lamps at the sites of a lattice or row, in a texture of `size` unwarped pixels. The origin of the exemplar

@@ -7,9 +7,10 @@ use glam::{DVec2, Vec3};
 pub struct Luminaire {
     /// Centre in texels.
     pub centre: DVec2,
-    /// Lengths along and across the axis of largest variance, in texels, the long one first.
+    /// Lengths along and across the axis at `orientation`, in texels, the long one first.
     pub size: DVec2,
-    /// Angle of the axis of largest variance from x towards y, in radians, in (-π/2, π/2].
+    /// Angle, from x towards y, of the axis along which the points of the lamp have the largest variance. In radians,
+    /// in (-π/2, π/2].
     pub orientation: f64,
     /// Area in texels. A texel at the lamp's edge counts only with the share that light covers.
     pub area: f64,

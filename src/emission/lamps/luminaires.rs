@@ -84,8 +84,8 @@ fn measure(label: u32, lamp: &Component, texture: &Image, lights: &Lights) -> Lu
     }
 }
 
-/// The angle of the axis of largest variance, in radians, in (-π/2, π/2]; 0 if the variance is equal in all directions.
-/// The argument holds the central second moments.
+/// The angle from x of the axis along which an area has the largest variance, in radians, in (-π/2, π/2]; 0 if the
+/// variance is equal in all directions. The argument holds the central second moments of the area.
 pub fn orientation([xx, xy, yy]: [f64; 3]) -> f64 {
     let (difference, cross) = (xx - yy, 2.0 * xy);
     let anisotropy = difference.hypot(cross);

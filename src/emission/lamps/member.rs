@@ -26,7 +26,7 @@ pub struct Member {
     pub centre: DVec2,
     /// Covariance matrix of the points inside the outline.
     pub moments: DMat2,
-    /// Angle of the smallest enclosing rectangle of the outline, in radians, from 0 to below π/2.
+    /// Angle from the x axis to a side of the smallest rectangle around the outline, in radians, from 0 to below π/2.
     pub angle: f64,
     /// Number of photo pixels that show the lamp.
     pub weight: f64,
@@ -120,7 +120,8 @@ pub fn polygon_moments(corners: &[DVec2]) -> Option<(f64, DVec2, DMat2)> {
     (area.abs() > 0.0 && moments.is_finite()).then(|| (area.abs(), origin + mean, moments))
 }
 
-/// Angle of the smallest rectangle around the corners, in radians, from 0 to below π/2 (Freeman and Shapira 1975).
+/// Angle from the x axis to a side of the smallest rectangle around the corners, in radians, from 0 to below π/2
+/// (Freeman and Shapira 1975).
 pub fn rectangle_angle(corners: &[DVec2]) -> f64 {
     let hull = polygon::convex_hull(corners.to_vec());
     let edges = hull.iter().zip(hull.iter().cycle().skip(1)).filter_map(|(a, b)| (*b - *a).try_normalize());

@@ -24,13 +24,19 @@ const STAIRCASE_TOLERANCE: f64 = 1.0;
 /// An outline runs along the corners of texels if the lamp is at most this many texels wide. An outline between texel
 /// centres would enclose only half of a single texel. [rounding]
 const MAX_NARROW_WIDTH: f64 = 2.0;
-/// Limits for restoring sharp corners; lengths are in texels. [origin not recorded]
+/// Limits for restoring sharp corners; lengths are in texels. [rounding]
 ///
-/// - `MIN_SIDE`: minimum length of a side whose direction is used.
-/// - `MAX_BLUNT`: maximum length of the blunt part between two sides.
-/// - `MAX_EXTENDED`: maximum length by which a side is extended.
-/// - `COS_CORNER`: cosine of 60°. At a corner, the outline must turn by at least 60° from one side to the next. The
-///   outline of a disc turns by less between two sides of length `MIN_SIDE`, so a disc gets no corners.
+/// - `MIN_SIDE`: minimum length of a side whose direction is used. An end that is off by `TOLERANCE` turns a side of
+///   this length by 3°, and a shorter side by more.
+/// - `MAX_EXTENDED`: maximum length by which a side is extended. A right-angled corner between sides along the rows and
+///   columns changes the crossings of the texel that holds it, and no others. The last exact crossing of a side lies on
+///   the centre line of the next row or column, so it is 0.5 to 1.5 texels away from the corner.
+/// - `MAX_BLUNT`: maximum length of the blunt part between two sides. It runs from one such crossing to the other, so
+///   it is rarely longer than two texels.
+/// - `COS_CORNER`: cosine of 60°. At a corner, the outline must turn by at least 60° from one side to the next. A disc
+///   gets no corners: its outline has sides of length `MIN_SIDE` only from a radius of 5 texels on. There,
+///   `TOLERANCE` allows sides that span 23° each, so the outline turns by at most 46° from one side, over a blunt part,
+///   to the next.
 const MIN_SIDE: f64 = 2.0;
 const MAX_BLUNT: f64 = 2.0;
 const MAX_EXTENDED: f64 = 1.5;

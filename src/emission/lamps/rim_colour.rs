@@ -2,8 +2,8 @@
 //!
 //! A lamp is brighter than the photo's white, so its core is white in the photo whatever its colour. At the rim, the
 //! lens blurs the lamp into the dark surroundings. There, all channels are below white and show the lamp's colour. The
-//! core gets the colour of the rim, with the minimum brightness that its clipped channels allow. The photo does not
-//! tell how much brighter the core really is; relighting estimates it.
+//! core gets the colour of the rim, scaled by the smallest factor at which no channel is darker than in the photo. The
+//! photo does not tell how much brighter the core really is; relighting estimates this.
 //!
 //! Not modelled: colour that changes within a lamp's core.
 
@@ -21,8 +21,10 @@ const MIN_BRIGHTNESS: f32 = 0.5;
 const RIM_WIDTH: usize = 2;
 /// A colour is read from a rim only if the rim has at least this number of pixels. [origin not recorded]
 const MIN_RIM: f64 = 8.0;
-/// Minimum ratio of a channel to the strongest channel; a weaker channel is raised to this value.
-/// [origin not recorded]
+/// Minimum ratio of a channel of a rim's colour to its strongest channel; a weaker channel is raised to this ratio. In
+/// coloured light, it limits restored values to 16 times the level at which channels clip. White light has larger
+/// ratios: the blue of a lamp of 2700 K, in linear sRGB, has 0.10. Any value up to 0.09 leaves such lamps unchanged.
+/// [convention]
 const MIN_CHANNEL: f64 = 1.0 / 16.0;
 
 /// The colours of lamps as read from their rims. They replace the colours of clipped pixels.
@@ -67,14 +69,15 @@ impl RimColours {
         Some(Self { level, colours: sums[1..].iter().map(|&sum| of(sum).or(all)).collect() })
     }
 
-    /// Replaces the clipped channels of `value`, a pixel of a component, by channels of the rim's colour. This colour
-    /// is scaled to the lowest brightness that agrees with all channels of `value`. No channel decreases.
+    /// Replaces the clipped channels of `value`, a pixel of a component, by those of the rim's colour times a factor.
+    /// The factor is the smallest for which no channel of the product is below `value`. Returns `value` if no channel
+    /// is clipped, or if the component has no colour.
     pub fn undo(&self, component: usize, value: Vec3) -> Vec3 {
         let clipped = value.cmpge(Vec3::splat(self.level));
         match self.colours.get(component).copied().flatten() {
             Some(colour) if clipped.any() => {
-                // Find the factor by which the rim's colour agrees with `value`. Each channel gives a factor; that of a
-                // clipped channel is only a lower bound. Take the largest of all.
+                // Find the factor. The rim's colour reaches `value` in a channel if it is multiplied by at least the
+                // channel's `strength`. Take the largest of all channels.
                 let strength = value / colour;
                 let min_factor = Vec3::select(clipped, strength, Vec3::ZERO).max_element();
                 let open = Vec3::select(clipped, Vec3::ZERO, strength).max_element();
@@ -85,7 +88,8 @@ impl RimColours {
     }
 }
 
-/// The label of the component that contains pixel `i` or, if there is none, of a component within [`RIM_WIDTH`].
+/// The label of the component that contains pixel `i` or, if there is none, of a component within [`RIM_WIDTH`] columns
+/// and rows. `None` if there is no such component either.
 fn label_near(components: &Components, i: usize, width: usize, height: usize) -> Option<u32> {
     let (x, y) = (i % width, i / width);
     let rows = y.saturating_sub(RIM_WIDTH)..(y + RIM_WIDTH + 1).min(height);

@@ -1,5 +1,5 @@
-//! Replaces lamps that few photo pixels show by similar lamps that many photo pixels show, because these are sharper.
-//! Also replaces lamps that something in front of them hides in part by similar lamps in full view.
+//! Replaces lamps that few photo pixels show by similar lamps that many photo pixels show: these are sharper. Lamps
+//! that are partly hidden by something in front of them are replaced by similar lamps in full view.
 
 use super::designs::Designs;
 use super::instance::Instance;
@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 /// `DIFFERENCE` + `BLUR_PIXELS` / √A, but at most `MAX_DIFFERENCE`. [origin not recorded]
 const DIFFERENCE: f64 = 0.25;
 
-/// `BLUR_PIXELS`, in photo pixels, allows for blur and bloom, which enlarge a small lamp most. For `MAX_DIFFERENCE`,
-/// see [`DIFFERENCE`]. [origin not recorded]
+/// `BLUR_PIXELS`, in photo pixels, allows for blur and bloom, which enlarge a small lamp by a larger share than a large
+/// one. For `MAX_DIFFERENCE`, see [`DIFFERENCE`]. [origin not recorded]
 const BLUR_PIXELS: f64 = 2.0;
 const MAX_DIFFERENCE: f64 = 0.5;
 
@@ -22,12 +22,14 @@ const MAX_DIFFERENCE: f64 = 0.5;
 /// similar lamps. [origin not recorded]
 const MIN_SHARP_SHARE: f64 = 0.4;
 
-/// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest one of its kind by more than
-/// this value. Values from 0.02 to 0.1 change which lamps are shown, but no lattice. [bench photos:real]
+/// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest dark share of its kind by more
+/// than this value. Values from 0.02 to 0.1 change which lamps are shown, but the lattice of no photo.
+/// [bench photos:real]
 const MAX_OBSTRUCTED: f64 = 0.05;
 
 /// Replaces each lamp that is not sharp, or that the photo does not show completely, by a similar lamp that is sharp
-/// and whole, with the same centre. Chooses at random among several such lamps, so that the texture keeps their variety.
+/// and whole. The centre stays. If there are several such lamps, one is chosen at random for each instance, so that
+/// the texture shows all of them. If there is none, the lamp stays.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -53,14 +55,14 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// The sharp ones of similar lamps.
+/// Of similar lamps, returns those that are sharp ([`MIN_SHARP_SHARE`]).
 fn sharpest(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
     let max_area = lamps.iter().map(|&k| exemplar.photo_area[k]).fold(0.0, f64::max);
     lamps.retain(|&k| exemplar.photo_area[k] >= MIN_SHARP_SHARE * max_area);
     lamps
 }
 
-/// The lamps of one design that nothing in front of them hides in part.
+/// Of lamps of one kind, returns those that are not obstructed ([`MAX_OBSTRUCTED`]).
 fn unobstructed(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
     let min_dark = lamps.iter().map(|&k| exemplar.dark_share[k]).fold(f64::INFINITY, f64::min);
     lamps.retain(|&k| exemplar.dark_share[k] <= min_dark + MAX_OBSTRUCTED);
@@ -68,7 +70,8 @@ fn unobstructed(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
 }
 
 /// Like [`show_sharpest`], but for lamps with a design: replaces each lamp that is not sharp, or that the photo does
-/// not show completely, by a sharp and whole lamp of its kind. The centre stays.
+/// not show completely, by a sharp, whole and unobstructed lamp of its kind. The centre stays. If its kind has no such
+/// lamp, the lamp stays.
 pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [Instance], seed: u64) {
     let clear = |kind: usize| {
         let of_kind = move |k: &usize| designs.of(*k).is_some_and(|(_, fitted)| fitted.kind == kind);

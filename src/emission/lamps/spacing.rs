@@ -10,8 +10,8 @@ use crate::emission::exemplar::Exemplar;
 use glam::DVec2;
 use std::collections::BTreeMap;
 
-/// Minimum gap between two lamps of the texture, as a share of the smallest gap between two whole lamps of the unwarped
-/// photo. [convention]
+/// Minimum gap between the boxes of two lamps of the texture, as a share of the smallest gap between the boxes of two
+/// whole lamps of the unwarped photo. [convention]
 const MIN_GAP_SHARE: f64 = 0.5;
 
 /// An axis-aligned box around a lamp, in unwarped pixels.

@@ -3,8 +3,8 @@
 //! A tileable texture may need a stretched lattice, so that a whole number of periods fits its sides. Lamps that are
 //! copied with their patch keep the distances that they have in the exemplar. On a stretched lattice, these distances
 //! are slightly wrong within a patch, and the error shows as a jump at the seams. Therefore lamps are placed by cells
-//! instead: each cell of the stretched lattice gets all lamps of one complete cell of the exemplar, the one that the
-//! patch at the cell's centre shows.
+//! instead: each cell of the stretched lattice gets all lamps of one complete cell of the exemplar. This is the cell
+//! that the patch there shows or, if that cell is incomplete, a random one.
 
 use super::instance::Instance;
 use super::sharpest;

@@ -18,8 +18,8 @@ const MAX_OFF_SITE: f64 = 0.2;
 /// Otherwise the site is usually dark, and its dark places may stay. [convention]
 const MIN_OCCUPANCY: f64 = 0.5;
 
-/// Makes the dark places at the border unusable for patches, that is, the places that the border of the exemplar cuts.
-/// The periods of the lattice, `a` and `b`, are in unwarped pixels.
+/// Makes the dark places that the border of the exemplar cuts unusable for patches. Leaves out sites that are usually
+/// dark ([`MIN_OCCUPANCY`]). The periods of the lattice, `a` and `b`, are in unwarped pixels.
 pub fn exclude(exemplar: &mut Exemplar, [a, b]: [DVec2; 2]) -> Result<()> {
     let (width, height) = (exemplar.width, exemplar.height);
     let inverse = DMat2::from_cols(a, b).inverse();

@@ -10,9 +10,10 @@ use glam::DVec2;
 /// Minimum gap between the lamps of adjacent copies of the exemplar, in unwarped pixels. [convention]
 const CELL_GAP: f64 = 4.0;
 
-/// An exemplar with fewer lamps than this repeats as a whole, so that rows of unlike lamps stay rows. With more lamps,
-/// patches are placed without a lattice. Patches also continue the lamps that the border cuts, so they keep the lit
-/// share better. They need enough lamps that the border does not cut. [judged on 15 photos]
+/// An exemplar without a period repeats as a whole if it has fewer lamps than this, so that rows of unlike lamps stay
+/// rows. With more lamps, patches are placed without a lattice. Patches also show the lamps that the border cuts, which
+/// a repetition leaves out; so the lit share is closer to that of the exemplar. But patches need enough lamps that the
+/// border does not cut. [judged on 15 photos]
 const FEW_LAMPS: usize = 16;
 
 /// All lamps form one isolated group if the free space around them is large compared with the distances between them.
@@ -27,7 +28,7 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
-/// The period, along x and along y, with which all panes of a luminous ceiling repeat, in unwarped pixels. It is the
+/// The period, along x and along y, with which a luminous ceiling repeats as a whole, in unwarped pixels. It is the
 /// length of the box around all panes, plus the width of the widest bar between panes.
 pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
     let panes = || exemplar.components.list.iter();
@@ -83,10 +84,12 @@ pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
 
 /// The periods along x and along y with which an exemplar repeats as a whole, in unwarped pixels. The texture should
 /// have the same lit share as the visible part of the plane. So the area of a repetition is the area of the lights that
-/// it copies, divided by that share. It is smaller than the exemplar if some corners of the exemplar are not visible,
-/// or if cut lamps are left out. A period is lengthened where the lamps of adjacent repetitions would come too close.
+/// it copies, divided by the lit share, but at most the area of `extent`. It is smaller than `extent` if some corners
+/// of the exemplar are not visible, or if cut lamps are left out. If neither is the case, the periods are those of
+/// [`of_rows`]. No period is shorter than [`min_cell`], so that the lamps of adjacent repetitions stay apart.
 ///
-/// A single lamp in a photo shows no spacing, so it repeats in squares, if the exemplar has room for the lamp.
+/// A single lamp in a photo shows no spacing, so both its periods have the same length. The exceptions: [`min_cell`] is
+/// longer along one axis, or does not fit into `extent`.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
     let lit: usize =
@@ -136,7 +139,8 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
 
 /// The period with which a row of lamps repeats as a whole: a vector along `period`, which leads from lamp to lamp. Its
 /// length is that of the exemplar along the row, including the free space at both ends, rounded to a multiple of
-/// `period`. `None` if the row may continue beyond the view at one of its ends. An end is in view if:
+/// `period`. `None` if the exemplar is shorter than half a period, or if the row may continue beyond the view at one of
+/// its ends. An end is in view if:
 ///
 /// - the exemplar extends beyond the place where the next lamp would begin, and
 /// - the photo, if there is one, shows the place where the centre of the next lamp would lie.

@@ -5,7 +5,7 @@ use crate::emission::exemplar::components::Component;
 use glam::DVec2;
 
 /// Two lamps are of one kind if their widths and their heights differ by at most this share of the larger value, or by
-/// at most two pixels. [judged on 5 photos]
+/// at most two unwarped pixels. [judged on 5 photos]
 const MAX_SIDE_DIFFERENCE: f64 = 0.33;
 /// A shift is not a period if, among the lamps that it moves onto lamps, more than this share land on a lamp of
 /// another kind. [judged on 5 photos]

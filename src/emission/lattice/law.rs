@@ -44,7 +44,7 @@ impl Law {
     }
 
     /// Stretches the lattice so that a texture of `size` unwarped pixels can repeat: its width and its height become
-    /// lattice vectors.
+    /// lattice vectors. Laws without a lattice are returned unchanged.
     ///
     /// Errors: `Degenerate` if this is impossible, for example because a side of the texture is shorter than half a
     /// period.
@@ -81,8 +81,8 @@ impl Law {
         }
     }
 
-    /// Whether the periods are exactly parallel to the axes; true if there are none. Of a row, only the period along
-    /// the row counts.
+    /// Whether the periods are exactly parallel to the axes. Of a row, only the period along the row counts. True for
+    /// the other laws: they have no periods, or periods that are parallel to the axes by construction (`Whole`).
     pub fn is_aligned(&self) -> bool {
         let on_axis = |period: DVec2| period.min_element() == 0.0 || period.max_element() == 0.0;
         match *self {

@@ -29,10 +29,9 @@ use correlation::Autocorrelation;
 use glam::DVec2;
 use law::Law;
 
-/// Minimum correlation at a period, as a share of m. To obtain m, an allowance for chance is subtracted from the
-/// correlation at each shift ([`Repeat::lower_bound`](repeats::Repeat::lower_bound)); m is the largest of these
-/// differences. A shift with a lower correlation probably moves lamps onto lamps of another kind.
-/// [bench emission:patterns]
+/// A shift may be a period only if its correlation is at least this share of the highest lower bound
+/// ([`Repeat::lower_bound`](repeats::Repeat::lower_bound)) of any shift. A shift with a lower correlation probably
+/// moves lamps onto lamps of another kind. [bench emission:patterns]
 const MIN_RELATIVE_CORRELATION: f32 = 0.9;
 /// The correlation at a shift counts only if at least this share of the valid pixels overlaps with valid pixels of the
 /// shifted image. [bench emission:patterns]
@@ -138,10 +137,11 @@ pub fn is_parallel(a: DVec2, b: DVec2) -> bool {
 ///
 /// - It moves lamps onto lamps of the same kind.
 /// - Its correlation is at least `min_value`.
-/// - Its correlation is at least `relative` times the highest
-///   [`Repeat::lower_bound`](repeats::Repeat::lower_bound) of all shifts.
+/// - Its correlation is at least `relative` times the highest [`Repeat::lower_bound`](repeats::Repeat::lower_bound) of
+///   all shifts.
 ///
-/// If the lights do not change along the x or y axis, a shift of one pixel along that axis precedes the other shifts.
+/// If the lights do not change along the x or y axis, a shift of one unwarped pixel along this axis precedes the other
+/// shifts.
 pub fn shifts(
     exemplar: &Exemplar,
     correlated: &Correlated,

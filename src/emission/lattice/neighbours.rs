@@ -24,7 +24,8 @@ pub fn rows([across, down]: &[Vec<f64>; 2]) -> Vec<DVec2> {
 }
 
 /// Periods along x and along y in unwarped pixels, at most [`ORDERS`] each. The n-th period is the median over all
-/// lamps of the distance to the n-th neighbour, weighted by photo pixels.
+/// lamps of the distance to the n-th neighbour in the same row or column. The weight of a lamp is the number of photo
+/// pixels that show it.
 pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| {
         let found = (1..=ORDERS).filter_map(|order| {

@@ -22,7 +22,7 @@ pub struct Repeat {
     pub shift: DVec2,
     /// The correlation at this shift.
     pub value: f32,
-    /// The number of pixels of the image that the shift moves onto pixels of the image.
+    /// Number of valid pixels of the image that the shift moves onto valid pixels.
     pub overlap: f32,
 }
 

@@ -13,10 +13,10 @@ use crate::image::try_vec;
 /// squared difference of w at each pixel of a lamp. The bench prints the light and the distances between lamps, with
 /// and without a lattice. [bench emission]
 ///
-/// - `ON_LATTICE`: about the squared difference of a pixel at which one patch shows a lamp and the other none: up to 1
-///   in colour, 1 in confidence, and 1 in each of the two distances.
-/// - `ANYWHERE`, for patterns without a lattice: it must stay below 1/3. A larger weight would select patches with the
-///   right amount of light but wrong distances between lamps.
+/// - `ON_LATTICE`: about the squared difference of a pixel at which one patch shows a lamp and the other patch shows
+///   none: up to 1 in colour, 1 in confidence, and 1 in each of the two distances.
+/// - `ANYWHERE`, for patterns without a lattice: from 1/3 on, the penalty selects patches with the right amount of
+///   light but wrong distances between lamps.
 const ON_LATTICE: f64 = 3.0;
 const ANYWHERE: f64 = 0.3;
 

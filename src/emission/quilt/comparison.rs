@@ -12,8 +12,8 @@ use crate::job::Job;
 use glam::Vec4;
 
 /// A patch counts as equally good as the best one if its error is at most a e + b, where e is the lowest error. The
-/// first value is a; Efros and Freeman (2001) also allow 10 %. The second value is the minimum of b; on a lattice, b
-/// may be larger (`Comparison::slack`). [paper: Efros and Freeman 2001]
+/// first value is a: Efros and Freeman (2001) also allow 10 %. The second value is b; on a lattice, b is larger if
+/// `Comparison::slack` is larger. [paper: Efros and Freeman 2001]
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
 /// The lit share of a pixel, in `[0, 1]`, is multiplied by this and rounded, so that light can be summed in integers.
@@ -60,7 +60,7 @@ pub struct Comparison<'a> {
     /// Lit share of the part of the exemplar that the photo shows.
     lit_share: f64,
     is_lattice: bool,
-    /// The value b in [`TOLERANCE`]: the difference in error that is tolerated in addition to the factor a.
+    /// The value b in [`TOLERANCE`]: equally good patches may exceed a times the lowest error by this.
     slack: f32,
 }
 
@@ -101,8 +101,8 @@ impl<'a> Comparison<'a> {
     }
 
     /// Returns two values for each shift: the number of empty pixels of a block that the shift fills, and whether it
-    /// would show usable pixels in the whole block. The number is not computed, and is 0, if another shift certainly
-    /// fills far more pixels.
+    /// would show usable pixels in the whole block. The number is not computed, and is 0, if it is certainly below
+    /// [`ENOUGH_COVERAGE`] times the number of another shift.
     pub fn fills(&self, block: &Block, shifts: &[Shift]) -> Vec<(usize, bool)> {
         let Rect { x, y, w, h } = block.rect;
         let empty = count(&block.empty);
@@ -145,8 +145,8 @@ impl<'a> Comparison<'a> {
     ///
     /// - Leaves out shifts that fill fewer than `min_fill` empty pixels. If `min_fill` is `None`, the minimum is
     ///   [`ENOUGH_COVERAGE`] times the largest number that any shift fills.
-    /// - Stops comparing a shift early, and gives it an infinite error, as soon as it cannot be equally good as the
-    ///   error `limit`, or as the lowest error found so far.
+    /// - Stops comparing a shift, and gives it an infinite error, as soon as its error must exceed
+    ///   [`Self::equally_good`] of the lowest known error. The lowest known error begins with `limit`.
     pub fn score(
         &self,
         block: &Block,
@@ -173,7 +173,8 @@ impl<'a> Comparison<'a> {
                 |&n: &usize| (penalty(n) + self.error(&rows, (&shifts[n], fills[n].1), compared, f32::INFINITY), n);
             let mut ranked: Vec<(f32, usize)> = covering.iter().map(error).collect();
             ranked.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            // If these rows have no known pixels, there is no difference by which to rank shifts, so keep all of them.
+            // If the compared rows have no known pixels, there is no difference by which to rank shifts, so keep all of
+            // them.
             ranked.truncate(if compared > 0 { FINALISTS } else { usize::MAX });
             covering = ranked.into_iter().map(|r| r.1).collect();
         }

@@ -310,8 +310,9 @@ impl Quilt<'_> {
     }
 
     /// Writes a shift to the empty pixels of a block. If `overlap`, the width and height of the overlap with earlier
-    /// patches, is given, seams are cut through the overlap. Known pixels right of the vertical seam and below the
-    /// horizontal seam are then overwritten as well.
+    /// patches, is given, seams are cut through the overlap. Known pixels that lie both right of the vertical seam and
+    /// below the horizontal seam are then overwritten as well. A pixel stays unchanged if the shift shows no usable
+    /// pixel there.
     fn paste(&mut self, block: &Block, shift: Shift, overlap: Option<[usize; 2]>) {
         let (working, rect, known) = (self.comparison.guide.working, block.rect, &block.known);
         let source = |x: usize, y: usize| {

@@ -58,7 +58,8 @@ fn a_lamp_whose_visible_part_is_no_part_of_a_rectangle_keeps_its_outline() {
 
 #[test]
 fn a_single_lamp_repeats_at_equal_distances_along_both_axes() {
-    // A strip of 160 × 40 pixels with one lamp. The lamp repeats in squares of equal area, whose sides are 80 pixels.
+    // A strip of 160 × 40 pixels with one lamp. The lamp repeats in squares with the area of the strip, so their sides
+    // are 80 pixels.
     let design = Design::new(160, 40, |x, y| (x - 70.0).abs() < 9.0 && (y - 22.0).abs() < 8.0);
     let result = continued(&design);
     let centres: Vec<DVec2> = inner(&result.luminaires, 500, 400).iter().map(|lamp| lamp.centre).collect();

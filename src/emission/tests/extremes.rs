@@ -48,8 +48,8 @@ fn textures_of_one_row_or_column_of_texels_show_a_line_of_the_pattern() {
         for centred in [false, true] {
             let result = exemplar.run(&Params { width, height, centred, ..Params::default() }).unwrap();
             let lit = result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0;
-            // The texture is a single line of texels. It runs either between lamps or through them; `share` is then the
-            // side of a lamp divided by the period.
+            // The texture is a single line of texels. If it runs between lamps, none of its texels is lit. If it runs
+            // through lamps, the lit share is `share`, the side of a lamp divided by the period.
             assert!(lit == 0.0 || (lit - share).abs() < 0.02, "{width} x {height}: {lit}");
         }
     }

@@ -32,7 +32,8 @@ fn grown(lighter: f64, strokes: &[([usize; 4], bool)]) -> Option<Surfaces> {
     grow(&room(lighter), &strokes, Monitor::default().job()).unwrap()
 }
 
-/// Asserts the labels of all pixels at least 8 rows from the seam and 8 columns from the door.
+/// Asserts that the ceiling is on the plane, the wall off it, and the door unknown. Skips pixels less than 8 rows from
+/// the seam or less than 8 columns from the door.
 fn assert_parted(surfaces: &Surfaces) {
     for (x, y) in (0..SIZE[1]).flat_map(|y| (0..SIZE[0]).map(move |x| (x, y))) {
         let label = surfaces.on_plane[y * SIZE[0] + x];

@@ -12,7 +12,7 @@ use std::sync::Arc;
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;
 
-/// The camera of all frames but those of the moving cameras: at the origin, looking along -z.
+/// A camera at the origin that looks along -z.
 fn camera() -> Camera {
     Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0)
 }
@@ -86,7 +86,8 @@ fn a_disc_that_turns_about_the_viewing_direction_moves_in_circles() {
         for x in 0..WIDTH {
             let [dx, dy] = [x as f32 + 0.5 - centre[0], y as f32 + 0.5 - centre[1]];
             if dx.hypot(dy) < 0.58 * focal_length() / 2.0 {
-                // In pixels, y points down, so undoing a rotation of the object rotates by the positive angle.
+                // The object was turned by the angle, anticlockwise. Motion leads back, clockwise. In pixels, where y
+                // points down, a clockwise rotation is one by the positive angle.
                 let (s, c) = angle.sin_cos();
                 let expected = [c * dx - s * dy - dx, s * dx + c * dy - dy];
                 assert!(is_close(image.pixel(x, y), expected), "{x} {y}: {:?} {expected:?}", image.pixel(x, y));
@@ -191,7 +192,7 @@ fn objects_correspond_by_name_and_triangles() {
     assert_eq!(warning.severity, pixels as f64 / (WIDTH * HEIGHT) as f64);
     let place = warning.place.unwrap();
     assert!(new.image.pixel(place.x as usize, place.y as usize)[0].is_nan());
-    // An object whose triangles are numbered in another way is another object.
+    // A mesh that lists the same triangles in another order counts as another object.
     let mut renumbered = wall();
     renumbered.triangles.swap(0, 1);
     assert_eq!(between(&frame(vec![renumbered]), &frame(vec![wall()])).unmatched.len(), 1);

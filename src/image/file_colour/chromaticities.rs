@@ -87,7 +87,8 @@ pub fn of_colorants(colorants: DMat3) -> Option<DMat3> {
     let target = Chromaticities::REC709;
     let to_pcs = adaptation(xyz(target.white)?, D50) * target.to_xyz()?;
     let matrix = usable(to_pcs.inverse() * colorants)?;
-    // The white of a profile is rounded. Scale the rounding error away, so that greys stay grey.
+    // The colorants of a profile are rounded, so their sum is not exactly white. If it is white within [`SAME`], scale
+    // the rounding error away, so that greys stay grey.
     let white = matrix * DVec3::ONE;
     let is_white = (white - DVec3::ONE).abs().max_element() < SAME;
     Some(if is_white { DMat3::from_diagonal(white.recip()) * matrix } else { matrix })

@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn curves_meet_their_standards() {
-        // Reference white is at 58 % of PQ, which is 203 cd/m², and at 75 % of HLG (Recommendation ITU-R BT.2408-7,
+        // Reference white (203 cd/m²) is the code value 0.58 in PQ and 0.75 in HLG (Recommendation ITU-R BT.2408-7,
         // table 1).
         assert!((pq(0.580_69) - 203.0).abs() < 0.05 && (pq(1.0) - 10_000.0).abs() < 1e-6 && pq(0.0) == 0.0);
         assert!((hlg(0.75) - 0.264_96).abs() < 1e-5 && (hlg(1.0) - 1.0).abs() < 1e-6);

@@ -80,8 +80,8 @@ pub fn space(bytes: &[u8]) -> Result<Space> {
     memory::check_profile(bytes.len(), has_tables(bytes))?;
     let options = ParsingOptions { max_profile_size: MAX_BYTES + 1, ..ParsingOptions::default() };
     let Ok(profile) = ColorProfile::new_from_slice_with_options(bytes, options) else { return Ok(Space::Unusable) };
-    // The curves of a profile end at 1, so a profile for high dynamic range names its transfer function by a code
-    // point instead (the `cicp` tag).
+    // The curves of a profile cannot exceed 1. A profile for high dynamic range therefore names its transfer function
+    // by a code point (the `cicp` tag).
     if let Some(codes) = &profile.cicp
         && let Some(space) = hdr(codes)?
     {

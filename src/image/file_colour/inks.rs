@@ -36,7 +36,8 @@ pub struct Inks {
 }
 
 impl Inks {
-    /// Reads the tables of a profile for a rendering intent; `None` if it has no tables that can be used.
+    /// Reads the tables of a profile for a rendering intent; `None` if the profile has no usable tables for this
+    /// intent.
     pub fn new(profile: &ColorProfile, intent: RenderingIntent) -> Result<Option<Self>> {
         let tables = match intent {
             RenderingIntent::RelativeColorimetric => &profile.lut_a_to_b_colorimetric,
@@ -64,8 +65,9 @@ impl Inks {
             && output.len() >= 2 * 3
             && curves.len() % INKS == 0
             && output.len() % 3 == 0;
-        // With 8 bits, the highest code is L = 100 and a = b = 127. With 16 bits, the code 0xff00 is L = 100, and
-        // 0x8000 is a = b = 0, or X = Y = Z = 1 (ICC.1:2022, 6.3.4 and 10.10).
+        // CIELAB with 8 bits: the highest code is L = 100 and a = b = 127. CIELAB with 16 bits: L = 100 is the code
+        // 0xff00, and a = b = 0 is 0x8000. CIE XYZ: X = Y = Z = 1 is the 16-bit code 0x8000 (ICC.1:2022, 6.3.4 and
+        // 10.10).
         let low = Vec3::new(0.0, -128.0, -128.0);
         let range = match tables.lut_type {
             _ if !is_lab => [Vec3::ZERO, Vec3::splat(65_535.0 / 32_768.0)],
@@ -105,8 +107,8 @@ impl Inks {
     }
 
     /// Interpolates in magenta, yellow and black at one grid point of cyan. Starts with the colour at the low corner of
-    /// `cell`. Then steps along one axis after another, in descending order of their fractions `part`, and adds the
-    /// difference of colour along each step times the fraction.
+    /// `cell`. Then steps to the next grid point along one axis after another, in descending order of their fractions
+    /// `part`. Each step adds its difference of colour times the fraction of its axis.
     fn tetrahedron(&self, cell: [usize; INKS], part: [f32; INKS]) -> Vec3 {
         let mut axes = [1, 2, 3];
         axes.sort_unstable_by(|&a, &b| part[b].total_cmp(&part[a]));
@@ -157,7 +159,8 @@ fn xyz(lab: Vec3) -> Vec3 {
 mod tests {
     use super::*;
 
-    /// A profile whose lightness falls with cyan and black: no ink gives white paper, full black ink gives black.
+    /// A profile whose lightness falls with the amounts of cyan and black. Paper without ink is white; full black ink
+    /// is black.
     fn inks() -> Inks {
         let size: usize = 3;
         let mut colours = Vec::new();

@@ -1,7 +1,7 @@
 //! Determines the colour space that a picture file states, and converts its samples to linear Rec.709.
 //!
-//! In OpenEXR and Radiance HDR files, all of these statements count together. In files of the other formats, the first
-//! statement that can be used counts:
+//! The table lists the statements that are read, by format. In OpenEXR and Radiance HDR files, all of them count
+//! together. In files of the other formats, only the first one that can be used counts.
 //!
 //! | file | statements |
 //! |---|---|
@@ -15,8 +15,8 @@
 //! whites other than D65 are adapted with the Bradford matrix, as in ICC profiles.
 //!
 //! Not modelled: rendering intents other than relative colorimetric (unless a profile lacks it), gain maps, endpoints
-//! and linked profiles of BMP files, black point compensation. If a file's statement cannot be used, the file is read
-//! as if it had none, and [`FileColour`] says so.
+//! and linked profiles of BMP files, black point compensation. If none of a file's statements can be used, the file is
+//! read as if it had none, and [`FileColour`] says so.
 
 mod chromaticities;
 mod cicp;

@@ -81,7 +81,7 @@ fn display_p3_is_converted_in_every_format() {
     assert_near(&load(&png(2, &wide, 16, &[iccp(&display_p3())])).0, wanted, 3e-4);
     let green = load(&png(2, &[0, 255, 0], 8, &[iccp(&display_p3())])).0;
     assert_near(&green, [0.0, 1.042_057, 0.0], 5e-4);
-    // In the other formats too, colours are converted in photos and unchanged in data and textures.
+    // In formats other than PNG, too, colours of photos are converted, and data and textures stay unchanged.
     for (name, file) in [
         ("JPEG", jpeg(&display_p3())),
         ("WebP", webp(&display_p3())),
@@ -325,7 +325,7 @@ fn adobe_rgb_is_known_by_its_exif_notes() {
     };
     let jpeg = |notes: &[u8]| {
         let file = jpeg(&display_p3());
-        // Cut out the two pieces of the profile.
+        // Replace the two segments that hold the profile by one segment with the EXIF block.
         let pieces = display_p3().len() + 2 * 18;
         let length = (2 + 6 + notes.len()) as u16;
         [&file[..2], &[0xff, 0xe1], &length.to_be_bytes(), b"Exif\0\0", notes, &file[2 + pieces..]].concat()

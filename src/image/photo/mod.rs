@@ -87,8 +87,9 @@ impl PhotoMetadata {
         self.focal.map(|focal| [focal, FOCAL_ERROR * focal])
     }
 
-    /// Returns the luminance that became the pixel value 1: L = 78 N² / (q t S). This luminance just saturates at the
-    /// ISO speed S, the f-number N and the exposure time t. The constant `LENS` is q. `None` if N, t or S is unknown.
+    /// Returns the luminance that the photo shows as the pixel value 1: L = 78 N² / (q t S). At the ISO speed S, the
+    /// f-number N and the exposure time t, this luminance just saturates the sensor. The constant `LENS` is q. `None`
+    /// if N, t or S is unknown.
     pub fn white_luminance(&self) -> Option<Luminance> {
         let (n, t, s) = (self.f_number?, self.exposure_time?, self.iso?);
         let expected = SATURATION * n * n / (LENS * t * s);
@@ -98,7 +99,8 @@ impl PhotoMetadata {
 }
 
 /// Returns the focal length in pixels, from the 35 mm equivalent, or from the focal length of the lens and the pixel
-/// density of the sensor. `None` for a cropped photo, or without these data.
+/// density of the sensor. `None` without these data, or if the photo was cropped to another aspect ratio than the
+/// recorded one.
 fn focal(exif: &Exif, width: f64, height: f64) -> Option<f64> {
     // Detect cropping: editors that crop a photo keep the recorded size. Editors that rotate it may exchange the
     // recorded sides.

@@ -51,8 +51,8 @@ impl Upright {
         let is_transposed = orientation.is_transposed();
         let image =
             if is_transposed { Image::new(height, width, channels)? } else { Image::new(width, height, channels)? };
-        // Along each axis of the upright picture, write from its first column or row forwards, or, if the axis is
-        // mirrored, from its last one backwards.
+        // Write each axis of the upright picture forwards from its first column or row. Write a mirrored axis backwards
+        // from its last column or row.
         let ahead = [channels, image.row_len()];
         let ends = [image.width - 1, image.height - 1];
         let (mut start, mut steps) = (0, [0; 2]);

@@ -135,8 +135,8 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, tags: &PixelTags, at: &C
     }
 }
 
-/// Converts the colours to linear values once all samples are in place. Colours that were multiplied by alpha are
-/// first divided by alpha.
+/// Converts the colours to linear values once all samples are in place. Colours that were multiplied by alpha are first
+/// divided by alpha, unless alpha is 0; integer colours are clipped to 1.
 fn decode_colours(image: &mut Image, tags: &PixelTags, encoding: Encoding) {
     let is_curved = encoding == Encoding::Srgb && !tags.depth.is_float();
     let is_associated = tags.alpha == Some(Alpha::Associated);

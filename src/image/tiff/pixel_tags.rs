@@ -214,7 +214,7 @@ impl<'a> PixelTags<'a> {
         [self.width.div_ceil(self.chunk[0]), self.height.div_ceil(self.chunk[1])]
     }
 
-    /// Iterates over the chunks of all planes whose samples are used.
+    /// Iterates over the chunks that hold colours or alpha. In a planar file, the chunks of other samples are left out.
     pub fn chunks(&self) -> impl Iterator<Item = Chunk> + use<> {
         let ([across, down], [width, height]) = (self.grid(), self.chunk);
         let (picture_width, picture_height) = (self.width, self.height);
@@ -278,7 +278,7 @@ pub fn unsupported(what: impl std::fmt::Display) -> Error {
 struct Chunks {
     /// Width and height in pixels of a chunk as stored.
     size: [usize; 2],
-    /// The tags whose values are the offsets of the chunks, and their sizes in bytes.
+    /// The tag that lists the offsets of the chunks (`offsets`), and the tag that lists their sizes in bytes (`bytes`).
     offsets: u16,
     bytes: u16,
 }

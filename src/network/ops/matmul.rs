@@ -28,7 +28,8 @@ impl Gemm {
         Self { alpha: at.float("alpha", 1.0), beta: at.float("beta", 1.0), turns_left, turns_right }
     }
 
-    /// Computes `α A B + β C`.
+    /// Computes `α A B + β C`, where A, B and C are the three inputs. A and B are transposed first if the attributes
+    /// say so. C is broadcast to the shape of `A B`; without C, its term is left out.
     pub fn run(&self, call: &Call) -> Result<Tensor> {
         let turned = |k: usize, turns: bool| {
             let tensor = call.input(k)?;

@@ -5,7 +5,8 @@ use super::call::Call;
 use crate::error::{Error, Result};
 use crate::exec;
 
-/// Computes `scale (x - mean) / √(variance + ε) + bias`, with parameters per channel.
+/// Computes `scale (x - mean) / √(variance + ε) + bias`. Inputs 1 to 4 hold scale, bias, mean and variance of each
+/// channel.
 pub fn batch(epsilon: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let channels = x.shape.get(1).copied().unwrap_or(1);

@@ -5,8 +5,8 @@ use super::call::Call;
 use super::gather::shape_from;
 use crate::error::{Error, Result};
 
-/// Reshapes a tensor. A size of 0 stands for the input's size along this axis, unless `keeps_zero`; -1 stands for the
-/// size that remains.
+/// Reshapes a tensor. A size of 0 means the input's size along the same axis, unless `keeps_zero`. One size may be -1:
+/// it is chosen such that the number of elements stays the same.
 pub fn reshape(keeps_zero: bool, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let wanted = call.input(1)?.as_integers()?;

@@ -162,8 +162,8 @@ fn warps_of_tiny_sources_and_of_extreme_quadrilaterals_are_correct() {
         for channels in [1, 3, 4] {
             let mut grey = Image::new(width, height, channels).unwrap();
             grey.data.fill(0.7);
-            // Map the output to a quadrilateral around the centre of the source; its side ranges from a millionth of a
-            // pixel to a million pixels.
+            // Map the output to a square around the centre of the source. The side of the square ranges from a
+            // millionth of a pixel to a million pixels.
             for scale in [1e-6 / 40.0, 0.1, 1.0, 3.0, 1e6 / 40.0] {
                 let middle = DVec2::new(width as f64, height as f64) / 2.0;
                 let centred = DMat3::from_translation(middle) * DMat3::from_scale(DVec2::splat(scale));

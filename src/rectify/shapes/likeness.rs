@@ -22,15 +22,15 @@ const MIN_INCIDENCE: f64 = 0.05;
 /// Cost of the assumption that all lamps are elongated by the same ratio in the same direction. The cost is needed
 /// because this assumption adds two parameters, and most lamps are as long as they are wide. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
-/// Squared deviation of a shape, divided by its variance, above which its cost grows more slowly, because the shape is
-/// probably of another kind. [convention]
+/// Limit of a shape's squared deviation, divided by the variance of the deviation. Beyond it the cost grows more
+/// slowly, because the shape is probably of another kind. [convention]
 const OUTLIER: f64 = 4.0;
 /// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention]
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 
 /// `BLOOMS`: widths of bloom (the bright margin around overexposed lamps) that are tried, in units of [`BLOOM_UNIT`].
-/// `BLOOM_SPREAD`: prior standard deviation of the width. Bloom lengthens the semi-axes of all regions by its width.
-/// [bench photos:tune]
+/// `BLOOM_SPREAD`: prior standard deviation of the width, in the same unit. Bloom lengthens the semi-axes of all
+/// regions by its width. [bench photos:tune]
 const BLOOMS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 const BLOOM_SPREAD: f64 = 1.5;
 /// Unit of bloom as a share of the photo's longer side: one pixel in a photo of 640 pixels. [convention]
@@ -53,9 +53,8 @@ pub struct Shape {
     stretch_error: f64,
 }
 
-/// Size and stretch of an ellipse, computed from the standard deviations along its axes. `log_size` is the logarithm of
-/// their product. `stretch` is a vector: its length is the logarithm of their ratio, and its angle is twice the angle
-/// of the long axis.
+/// Size and stretch of an ellipse whose standard deviations along its axes are a ≥ b. `log_size` is ln(a b). `stretch`
+/// is a vector of length ln(a / b), at twice the angle of the long axis.
 #[derive(Clone, Copy, Debug)]
 struct Form {
     log_size: f64,
@@ -70,7 +69,8 @@ fn axes(c: DMat2) -> ([f64; 2], DVec2) {
     ([mean + spread, (mean - spread).max(f64::EPSILON * mean)], DVec2::new(half, cross).normalize_or_zero())
 }
 
-/// Returns the covariance of a uniform ellipse after its semi-axes are shortened by `width`.
+/// Returns the covariance of a uniform ellipse after its semi-axes are shortened by `width`, but not below
+/// [`MIN_SEMIAXIS`].
 fn without_border(covariance: DMat2, width: f64) -> DMat2 {
     let (variances, double_angle) = axes(covariance);
     let [a, b] = variances.map(|variance| ((2.0 * variance.sqrt() - width).max(MIN_SEMIAXIS) / 2.0).powi(2));

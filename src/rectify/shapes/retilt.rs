@@ -1,4 +1,4 @@
-//! Corrects a view so that its plane has the tilt that was found from the lamps.
+//! Corrects a view so that the plane of the lamps has the tilt that was estimated from the shapes of the lamps.
 
 use super::likeness::{self, Shape};
 use super::tilt::{Tilt, TiltEstimate};

@@ -44,7 +44,8 @@ fn view(normal: DVec3, error: f64) -> View {
     }
 }
 
-/// Draws the mask of discs on the true plane at distance 1. Each disc has a centre and a radius in plane units.
+/// Draws the mask of discs on the plane with the normal [`true_normal`], at distance 1 from the camera. Each disc has a
+/// centre and a radius in plane units.
 fn discs(at: &[(DVec2, f64)]) -> Image {
     let perspective = camera(true_normal(), FOCAL);
     let (right, down) = (perspective.axes.col(0), perspective.axes.col(2));

@@ -20,20 +20,20 @@ const FOCAL_STEP: f64 = 0.4;
 /// [bench photos:tune]
 const KNOWN_FOCAL: f64 = 0.1;
 /// Step of the finite differences that measure the curvature of the cost at its minimum, in radians and in the
-/// logarithm of the focal length. A wide step smooths the kinks that medians and limits make in the cost.
-/// [bench photos:tune]
+/// logarithm of the focal length. A wide step smooths the kinks of the cost, which its medians and its clamped terms
+/// cause. [bench photos:tune]
 const WIDTH: f64 = 0.02;
 /// Number of tilts of the coarse search that are refined. [bench photos:tune]
 const STARTS: usize = 12;
-/// First and last step of the refinement, in radians. The steps of the logarithm of the focal length are twice as
-/// large. [convention]
+/// Step of the refinement at its start and at its end, in radians. The steps of the logarithm of the focal length are
+/// twice as large. [convention]
 const FIRST_STEP: f64 = 0.05;
 const LAST_STEP: f64 = 1e-4;
 /// The cost of a normal is its squared deviation from the normal that the lines imply, divided by the variance. The
 /// cost is limited to this value, because the lines may be entirely wrong. [bench photos:tune]
 const MAX_LINES_COST: f64 = 9.0;
-/// A roll of the camera costs `(roll / ROLL_ERROR)²`, at most `MAX_ROLL_COST`, because most photographers hold the
-/// camera upright. `ROLL_ERROR` is in radians. [bench photos:tune]
+/// Most photographers hold the camera upright. A roll of the camera therefore costs `(roll / ROLL_ERROR)²`, but at most
+/// `MAX_ROLL_COST`. `ROLL_ERROR` is in radians. [bench photos:tune]
 const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
 /// A tilt is rejected if the cosine of the angle between its normal and the normal that the lines imply is below this.

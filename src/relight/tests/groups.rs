@@ -205,7 +205,7 @@ fn every_reason_for_a_missed_goal_is_reported() {
     assert!(error.message.contains("no light of any group finds its way to a goal"), "{error}");
 }
 
-/// A goal in lux is met if the luminance on its place is right, whatever the colour of the light.
+/// A goal in lux is met if the luminance at the goal's place is right, whatever the colour of the light.
 #[test]
 fn lux_are_luminance() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);
@@ -236,8 +236,8 @@ fn limits_count_on_one_side() {
         powers(&responses, &goals, &GroupParams { tolerance: 1e-4, ..GroupParams::default() }).unwrap()
     };
     let one = |least, constraint| at(0.0, 0.0, least, constraint);
-    // If both lamps have the same power, the darker desk just reaches its lower limit, and the brighter desk exceeds
-    // it.
+    // With two equal lower limits, both lamps get the power at which the darker desk just reaches its limit. The
+    // brighter desk exceeds its limit.
     let both = responses.all(0).mean.x.min(responses.all(1).mean.x);
     let solution = solve(one(40.0, Constraint::AtLeast), one(40.0, Constraint::AtLeast));
     assert!(solution.unreachable.is_none(), "{solution:?}");

@@ -73,7 +73,8 @@ fn bright_points_count_more_by_the_coefficient_of_variation() {
 }
 
 /// With other light `b`, the least squares solution for the target `t` is `c = E[r (t - b)] / E[r²]`. With few paths,
-/// `c` is noisy but unbiased, although the mean square of the values of single paths is far larger than `E[r²]`.
+/// `c` is noisy but unbiased. An estimate of `E[r²]` by the mean square of single paths would be far too large, and `c`
+/// too small.
 #[test]
 fn noise_does_not_make_the_answer_dark() {
     let scene = scene();

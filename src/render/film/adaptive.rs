@@ -35,7 +35,8 @@ const FIRST_PASS_PATHS: u32 = 4;
 /// target; the bias is larger if passes adapt to fewer paths. [bench error_control]
 pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Limit on the paths per pixel of a tile, as a multiple of `samples`. Without a limit, light that few paths find (a
-/// caustic, or the glossy reflection of a small lamp) would take all paths. [origin not recorded]
+/// caustic, or the glossy reflection of a small lamp) would take all paths. At the limit, the error of a tile is 1/8 of
+/// its error with `samples` paths. Only tiles that need even more depend on the limit. [convention]
 const MAX_TILE_RATIO: u32 = 64;
 /// The relative error of a pixel is its error divided by its luminance. If the luminance is less than this share of
 /// the image's mean radiance, the error is divided by this share of the mean instead. [convention: the target error is

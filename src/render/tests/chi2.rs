@@ -57,7 +57,7 @@ fn tail(z: f64) -> f64 {
 
 #[test]
 fn limits_are_those_of_tables() {
-    // Compare with 0.1 % quantiles from tables: 29.588 for 10 degrees of freedom, and 149.449 for 100. With few
+    // Compare with upper 0.1 % quantiles from tables: 29.588 for 10 degrees of freedom, and 149.449 for 100. With few
     // degrees of freedom, the approximation is off by 0.6 %.
     assert!((limit(10.0, 1) - 29.588).abs() < 0.2 && (limit(100.0, 1) - 149.449).abs() < 0.1);
     assert!((tail(1.959964) - 0.025).abs() < 1e-6);

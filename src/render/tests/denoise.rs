@@ -11,7 +11,8 @@ fn features(world: &World, camera: &Camera, width: usize, height: usize) -> [Ima
     images.try_into().unwrap()
 }
 
-/// Returns the mean of the squared errors, each divided by the squared true value plus (1 % of the mean)².
+/// Returns the mean over all values of (v - t)² / (t² + (0.01 m)²). t is the true value, and m is the mean of all true
+/// values.
 fn rel_mse(image: &Image, truth: &Image) -> f64 {
     let mean = truth.data.iter().map(|&v| f64::from(v)).sum::<f64>() / truth.data.len() as f64;
     let square = |(&v, &t): (&f32, &f32)| f64::from(v - t).powi(2) / (f64::from(t).powi(2) + (0.01 * mean).powi(2));
@@ -128,8 +129,8 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     let error = (renders.iter().map(|(_, output)| mean(&square(&output.image))).sum::<f64>() / n).sqrt() / unit;
     let stated = (renders.iter().map(|(_, output)| output.error.powi(2)).sum::<f64>() / n).sqrt();
     assert!(stated > 0.7 * error && stated < 1.4 * error, "error {stated} stated, {error} measured");
-    // The intervals contain the truth for the nominal 95 % of the values. They are widened by the noise of the
-    // reference.
+    // The intervals contain the truth for the nominal 95 % of the values. The reference itself is noisy, so its error
+    // is added to the half-widths of the intervals.
     let inside = |output: &denoise::Output| {
         let half_widths = output.interval.data.iter().zip(&reference.variance.data);
         let half_widths = half_widths.map(|(&own, variance)| own.hypot(1.96 * variance.sqrt()));
@@ -138,7 +139,8 @@ fn a_preview_has_a_fraction_of_the_error_and_states_its_bias() {
     };
     let covered = renders.iter().map(|(_, output)| inside(output)).sum::<f64>() / n;
     assert!(covered > 0.93 && covered < 0.97, "{covered}");
-    // Compute the squared bias of the mean preview in each square; subtract the noise that remains in the mean.
+    // Compute the squared bias of each square of 8 × 8 pixels: the squared error of the mean preview minus the variance
+    // of this mean.
     let truth = squares(&truth);
     let off: Vec<Vec<f64>> = renders
         .iter()
@@ -166,12 +168,13 @@ fn a_render_adds_a_preview_and_only_the_requested_layers() {
     let names: Vec<&str> = film.layers.iter().map(|l| l.name.as_str()).collect();
     assert_eq!(names, ["Normal", "Depth"]);
     let preview = film.preview.unwrap();
-    // The preview leaves the main image unchanged, and has a smaller error.
+    // The preview leaves the main image unchanged, and has a smaller error than the main image.
     let plain = render(&world, &camera, &Params { preview: 0.0, ..params.clone() });
     assert!(plain.preview.is_none() && plain.beauty == film.beauty);
     let truth = render(&world, &camera, &Params { preview: 0.0, samples: 256, seed: 9, ..params.clone() }).beauty;
     let (before, after) = (rel_mse(&film.beauty, &truth), rel_mse(&preview.image, &truth));
-    // With path sharing, errors are small and correlated between neighbours, so that the filter gains less.
+    // Path sharing makes the errors of neighbours small but correlated, and averaging neighbours removes correlated
+    // errors less well. So the filter need only halve the error here.
     assert!(after < before / 2.0, "from {before} to {after}");
     // At a tiny strength, the filter only averages the two halves.
     let weak = render(&world, &camera, &Params { preview: 1e-12, ..params.clone() }).preview.unwrap().image;
@@ -243,8 +246,8 @@ fn an_edge_in_the_guides_stays_sharp() {
     }
 }
 
-/// The filter would blur a bright column that the guides do not show. The halves differ by the same amount at all
-/// pixels, so that a half has the same standard error of 0.5 everywhere.
+/// The filter would blur a bright column that the guides do not show. The halves differ by d = √0.5 at all pixels, so a
+/// half has the standard error d / √2 = 0.5 everywhere.
 #[test]
 fn no_half_moves_by_more_than_two_standard_errors() {
     let light = |x: usize| if x == 32 { 6.0 } else { 1.0 };

@@ -42,7 +42,8 @@ fn energy_is_never_made() {
                 let min = if roughness <= 0.2 && height >= 1.0 { 0.95 } else { 0.3 };
                 assert!(mean > min, "{what}");
                 if metallic == 1.0 && roughness == 1.0 {
-                    // For uniformly distributed microfacet normals, the integral of the lobe has a closed form.
+                    // At roughness 1, all microfacet normals are equally likely. The integral of the reflection lobe
+                    // over all directions then has a closed form.
                     let cosine = f64::from(height) / f64::from(height).hypot(3.0);
                     let expected = 1.0 - cosine * ((1.0 + cosine) / cosine).ln();
                     assert!((mean - expected).abs() < 4.0 * error + 0.01 * expected, "{what}, expected {expected}");

@@ -160,7 +160,7 @@ fn a_cancelled_render_leaves_what_was_published() {
     });
     assert_eq!(result.unwrap_err(), Error::cancelled());
     // The render was cancelled after the coarse pass, which traced one path in every second pixel of every second row.
-    // Each other pixel shows the value of the traced pixel in its block of 2 × 2.
+    // The three untraced pixels of each 2 × 2 block show the value of its traced pixel.
     let film = last.unwrap();
     let paths = film.paths.data.iter().sum::<f32>();
     assert!(paths > 0.0 && paths < 4096.0, "{paths}");

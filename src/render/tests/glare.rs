@@ -202,7 +202,8 @@ fn limits_have_clear_answers() {
     black.materials[0] = matt(0.0, 0.0);
     let black = rated(black, EYE, 64);
     assert!(black.ugr == f64::INFINITY && black.background == 0.0, "{black:?}");
-    // A luminaire without dimensions and an emissive surface are not rated; their illuminance is reported instead.
+    // A luminaire without dimensions and an emissive surface are not rated. Instead, the illuminance that they cause at
+    // the eye is reported.
     let direct = 3000.0 / PI * 1.5 * 3.0 / 11.25f64.powi(2);
     let point = rated(room(Luminaire { size: [0.0; 3], ..panel() }, &[at]), EYE, 64);
     assert!(point.sources.is_empty() && (point.unrated_lux / direct - 1.0).abs() < 2e-3, "{point:?}");

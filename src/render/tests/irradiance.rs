@@ -48,11 +48,12 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         measure(&world(Scene { meshes: vec![floor.clone(), small], ..scene.clone() }), &centre_of(0));
     let (mean, own_error) = measure(&world(scene.clone()), &centre_of(0));
     assert!((mean - expected).abs() < 4.0 * error.hypot(own_error), "{mean} and {expected}");
-    // The standard error is nearly as small as for the separate lamp: no samples are wasted on dark texels.
+    // The standard error is less than twice that of the separate lamp, because no light samples go to dark texels.
     assert!(own_error < 2.0 * error, "{own_error} and {error}");
 
-    // Shift or mirror the texture coordinates; the wrap mode must map the lit texel to the same place. The mirrored
-    // texture is read from u = v = 2 down to 1, where each second copy is mirrored.
+    // Shift or mirror the texture coordinates; the wrap mode must map the lit texel to the same place. With
+    // `Wrap::Mirror`, the copy of the texture between 1 and 2 is mirrored. Reading u and v from 2 down to 1 mirrors it
+    // again, which restores the original.
     for (wrap, from, to) in [
         (crate::scene::Wrap::Repeat, Vec2::new(3.0, -2.0), Vec2::new(4.0, -1.0)),
         (crate::scene::Wrap::Mirror, Vec2::new(2.0, 2.0), Vec2::new(1.0, 1.0)),

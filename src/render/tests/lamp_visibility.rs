@@ -143,7 +143,8 @@ fn paths_in_one_room_need_only_the_surfaces_around_it() {
     let params = Params { width: 40, height: 24, samples: 32, ..Params::default() };
     let [a, b] = [&surroundings, &whole].map(|world| render(world, &inside(), &params));
     assert!(a.beauty == b.beauty && a.variance == b.variance && a.lamp_visibility == b.lamp_visibility);
-    // After 1024 paths, one world has an acceleration structure of the surroundings (`vicinity`), the other has none.
+    // After 1024 paths, `surroundings` has the acceleration structure `vicinity`; `whole` has none, because it may not
+    // build one.
     let has_vicinity = |world: &World| {
         let learning = world.learning().unwrap();
         let point = SurfacePoint { mesh: 0, triangle: 0, barycentric: Vec2::splat(0.3), front: true };
@@ -164,7 +165,8 @@ fn light_through_a_gap_is_not_lost() {
         |world: &World| tiles(world, &params, 24).into_iter().map(|t| t.iter().sum::<f64>()).collect::<Vec<_>>();
     let [(mean, variance), (expected, other)] =
         [&learns, &alike].map(|world| mean_and_variance(whole(world).into_iter()));
-    // The probability of a larger difference is 0.1 %, by Student's t with 46 degrees of freedom.
+    // The means differ by more than 3.5 standard errors with a probability of 0.1 %, by Student's t with 46 degrees of
+    // freedom.
     let z = (mean - expected) / (variance + other).sqrt();
     assert!(z.abs() < 3.5, "{mean} instead of {expected}: {z} standard errors");
     assert!(expected > 10.0 * other.sqrt() && mean > 10.0 * variance.sqrt(), "{expected} {other} {mean} {variance}");

@@ -23,7 +23,7 @@ fn layer<'a>(film: &'a Film, name: &str) -> &'a Image {
     &film.layers.iter().find(|l| l.name == name).unwrap().image
 }
 
-/// A scene under an open sky with a lamp, a point light, and every kind of surface.
+/// A scene with a lamp, a point light and every kind of surface, under an open sky.
 fn open() -> Scene {
     let mut scene = everything();
     let names = ["Floor", "Ceiling", "Gloss", "Mirror", "Window", "Leaf"];
@@ -37,8 +37,8 @@ fn open() -> Scene {
     scene
 }
 
-/// Returns the largest difference between the sum of all layers and the main image, relative to the value of the
-/// pixel.
+/// Returns the largest difference between the sum of all layers and the main image, relative to the value of the main
+/// image at the same pixel.
 fn sum_error(film: &Film) -> f32 {
     let n = film.beauty.data.len();
     (0..n)

@@ -108,9 +108,9 @@ fn parallel_form_factor(a: f64, b: f64, c: f64) -> f64 {
     (x / p * (y / p).atan() + y / q * (x / q).atan()) / std::f64::consts::TAU
 }
 
-/// Returns the form factor from a small facet to a perpendicular rectangle at distance `c`, which is `a` wide and `b`
-/// high. The rectangle stands on the facet's plane, and one of its lower corners is the foot of the perpendicular from
-/// the facet.
+/// Returns the form factor from a small facet to a rectangle of width `a` and height `b`, which stands upright on the
+/// plane of the facet. The rectangle's plane is at the distance `c` from the facet, and one of the lower corners of the
+/// rectangle is the point of that plane nearest to the facet.
 fn perpendicular_form_factor(a: f64, b: f64, c: f64) -> f64 {
     let (x, y) = (a / c, b / c);
     let r = 1.0 / (1.0 + y * y).sqrt();

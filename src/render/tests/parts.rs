@@ -113,7 +113,8 @@ fn parts_are_the_same_on_any_number_of_threads_and_show_themselves() {
 fn a_merged_image_has_the_mean_and_the_error_of_one_rendered_at_once() {
     let (world, params) = (world(everything()), Params { width: 24, height: 16, samples: 64, ..Params::default() });
     let (mut sums, mut squares, mut errors) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-    // Most of the squared error comes from the few renders with rare bright paths, so its mean takes many renders.
+    // Most of the squared error comes from a few renders with rare bright paths. So a precise mean of the squared error
+    // needs many renders.
     let count = 128;
     for seed in 0..count {
         let params = Params { seed: 100 + seed, ..params.clone() };
@@ -204,7 +205,7 @@ fn damaged_files_are_errors_and_a_cancel_leaves_none() {
             damaged.truncate(rng.below(bytes.len()));
         } else {
             for _ in 0..1 + rng.below(4) {
-                // Corrupt mostly the header.
+                // In every third round, corrupt the first 2000 bytes alone, which hold the header.
                 let at = rng.below(if round % 3 == 1 { 2000 } else { bytes.len() });
                 damaged[at] = rng.next_u32() as u8;
             }

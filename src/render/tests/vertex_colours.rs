@@ -37,7 +37,8 @@ fn colours_between_vertices_are_interpolated() {
 #[test]
 fn alpha_of_vertices_lets_the_sky_through() {
     let corners = [0.0, 1.0, 1.0, 0.0].map(|alpha| Vec4::new(0.5, 0.5, 0.5, alpha));
-    // The sheet covers 0.75 of the view and has a radiance of 0.4; the remainder shows the sky.
+    // At x = 0.75, the opacity of the sheet is 0.75 and its radiance 0.8 × 0.5 = 0.4. The share 0.25 shows the sky of
+    // radiance 1.
     let found = seen(sheet(&corners, AlphaMode::Blend), 0.75, 0.25);
     assert!((found - DVec3::splat(0.75 * 0.4 + 0.25)).length() < 0.02, "{found}");
     // With a cutoff of one half, the sheet ends at its middle.

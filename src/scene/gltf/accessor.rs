@@ -21,8 +21,8 @@ struct Strided<'a> {
 }
 
 impl<'a> Strided<'a> {
-    /// A view of `count` elements, starting `offset` bytes into a buffer view. An error if they exceed the buffer
-    /// view.
+    /// Returns a view of `count` elements, starting `offset` bytes into a buffer view. Returns an error if the elements
+    /// reach beyond the end of the buffer view.
     fn new(
         file: &'a File,
         view: Index<buffer::View>,
@@ -138,7 +138,7 @@ pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f
 }
 
 /// Reads an accessor of vectors with `N` components (16 for 4 × 4 matrices, column by column). Normalised integers are
-/// scaled to `[0, 1]` or `[-1, 1]`.
+/// scaled: unsigned ones to `[0, 1]`, signed ones to `[-1, 1]`.
 pub fn vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; N]>> {
     read_vectors(file, index).map_err(|e| e.context(format_args!("accessor {}", index.value())))
 }

@@ -27,7 +27,8 @@ pub struct Decoded {
 }
 
 impl Decoded {
-    /// Decodes a primitive. `None` if it has no Draco stream, or if its accessors also hold the data uncompressed.
+    /// Decodes a primitive. `None` if it has no Draco stream, or if its file also holds the vertex positions
+    /// uncompressed.
     pub fn read(file: &File, budget: &dyn Budget, primitive: &Primitive) -> Result<Option<Self>> {
         let Some(settings) = primitive.extensions.as_ref().and_then(|e| e.others.get(DRACO)) else { return Ok(None) };
         let positions = primitive.attributes.get(&Checked::Valid(Semantic::Positions));

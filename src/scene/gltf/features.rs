@@ -22,8 +22,8 @@ pub const WEBP: &str = "EXT_texture_webp";
 /// Extension for materials of the specular-glossiness workflow.
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
-/// Extensions that this importer reads, so that a file may list them as required. Of a material with variants, only the
-/// default variant is read.
+/// Extensions that this importer reads. A file that requires any other extension is refused. Of a material with
+/// variants, only the default variant is read.
 pub const READ: [&str; 15] = [
     DRACO,
     IES,
@@ -188,8 +188,8 @@ fn shown<'a>(document: &'a Value, node: &Value) -> Option<&'a Value> {
     document.get("meshes")?.get(index as usize)
 }
 
-/// Reports morph targets that change colours or texture coordinates and have a weight other than 0. They are not
-/// rendered: only positions and normals are mixed.
+/// Reports morph targets that change colours or texture coordinates and have a weight other than 0. These changes are
+/// not rendered: of a morph target, only the displacements of positions and normals are applied.
 fn weights(list: &mut Vec<Unrendered>, object: &Value, mesh: Option<&Value>, place: &dyn Fn() -> String) {
     let Some(mesh) = mesh else { return };
     let mixed = |(_, target): (&(usize, &Value), &Value)| {

@@ -4,7 +4,7 @@
 //! The conversion is the one that Khronos published with the extension ("convert-between-workflows", Gary Hsu). It
 //! solves a quadratic equation for the metalness at which the material keeps the brightness of both its diffuse and
 //! its specular colour. The base colour is a mixture of two estimates, one from the diffuse colour and one from the
-//! specular colour. Textures are converted texel by texel, at the size of the larger texture.
+//! specular colour. Textures are converted texel by texel, at the larger width and the larger height of the two.
 //!
 //! Not modelled: textures of one material with different texture coordinates. Such a material keeps its
 //! metallic-roughness values and is listed as not rendered. If the two textures have different wrap modes, the wrap
@@ -81,7 +81,8 @@ pub struct Colours<'a> {
 }
 
 impl Colours<'_> {
-    /// Width and height of the converted textures; `None` if the material has no textures.
+    /// Width and height of the converted textures: the larger width and the larger height of the given textures. `None`
+    /// if the material has no textures.
     pub fn size(&self) -> Option<[usize; 2]> {
         let sizes = [self.diffuse_texture, self.specular_texture].into_iter().flatten();
         sizes.map(|t| [t.image.width, t.image.height]).reduce(|a, b| [a[0].max(b[0]), a[1].max(b[1])])

@@ -96,9 +96,10 @@ struct Importer<'a> {
     tinted: Vec<(usize, [f32; 4], usize)>,
     /// Indices in the file of the IES profiles read so far. Profile `profiles[i]` is distribution `i` of the scene.
     profiles: Vec<usize>,
-    /// Whether all luminaires shine from points.
+    /// Whether `is_point` is set for all luminaires, even for those whose files state a luminous size.
     point_luminaires: bool,
-    /// The world transform of each node. Filled only if the file has skins, whose joints are nodes.
+    /// The world transform of each node; `None` for a node in or below a cycle of nodes. The list is empty if the file
+    /// has no skins, because only the joints of skins need it.
     nodes: Vec<Option<DMat4>>,
     vertices: u64,
     triangles: u64,
@@ -299,8 +300,9 @@ impl Importer<'_> {
         Ok(Posed { positions, normals, is_mirrored })
     }
 
-    /// Checks the vertices and triangles of a primitive, including morph targets, against the limits before they are
-    /// allocated. Instances let a small file produce huge meshes.
+    /// Adds the vertices and triangles of a primitive, including its morph targets, to the totals. Returns an error if
+    /// a total exceeds its limit. Call it before the primitive is allocated: with instances, a small file can produce
+    /// huge meshes.
     fn reserve(
         &mut self,
         positions: Index<json::Accessor>,

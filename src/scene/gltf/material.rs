@@ -12,8 +12,8 @@ use gltf::json::extensions::material::PbrSpecularGlossiness;
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, extensions, material, texture};
 
-/// Identifies the encoded bytes of an image. Exporters often write several images that share one buffer view; their
-/// textures are decoded once.
+/// Identifies the encoded bytes of an image. Exporters often write several images that share one buffer view. Such
+/// images have the same source, so that textures with equal encoding and wrap modes are decoded only once ([`Key`]).
 #[derive(Clone, Copy, PartialEq)]
 enum Source {
     View(usize),
@@ -222,8 +222,8 @@ impl<'a> Materials<'a> {
         Ok(Texture { name: stored.name.clone(), image: decoded, wrap: stored.wrap })
     }
 
-    /// Decodes an image. Before any pixel is decoded, the budget lends the decoder's temporary memory, and `count` adds
-    /// the size in the image's header to the totals.
+    /// Decodes an image. First the budget lends the decoder's temporary memory. Then `count` adds the size in the
+    /// image's header to the totals. Only then are pixels decoded, so that an image that is too large is refused early.
     fn decode(&mut self, bytes: &[u8], encoding: Encoding) -> Result<Image> {
         let mut image = None;
         self.budget.lend(io::working_bytes(bytes)?, &mut || {

@@ -22,8 +22,8 @@ pub const GRID: f64 = 256.0;
 /// scene's half-extent ([`detail`]), and at least [`GRID`]. [convention]
 const FAR: f64 = 4.0;
 
-/// Once this many corners of bounding boxes are collected, no further nodes are examined: they would change the origin
-/// little. [convention]
+/// Once this many corners of bounding boxes are collected, no further nodes are examined. The origin follows from the
+/// median of the corners, which further corners would hardly move. [convention]
 const MAX_CORNERS: usize = 1 << 16;
 /// If more corners than this are collected, only every n-th one is used, so that at least this many and fewer than
 /// twice as many remain. The remaining corners fit into the library's small memory reserve. [convention]

@@ -104,7 +104,8 @@ impl Skinning {
     }
 }
 
-/// Returns for each joint of a skin its world transform times its inverse bind matrix.
+/// Returns for each joint of a skin its world transform times its inverse bind matrix (the identity if the skin has no
+/// inverse bind matrices).
 fn joints(file: &File, skin: Index<Skin>, nodes: &[Option<DMat4>]) -> Result<Vec<DMat4>> {
     let root = &file.root;
     let skin = root.get(skin).ok_or_else(|| missing("skin", skin.value(), root.skins.len()))?;

@@ -401,8 +401,8 @@ fn broken_bytes_never_panic() {
         let mut rng = Rng::new(42, &[round]);
         let mut broken = glb.clone();
         for _ in 0..1 + rng.below(4) {
-            // Corrupt mostly the JSON, which holds the structure. Replace a digit by a random digit: the JSON stays
-            // readable, and its numbers contradict each other.
+            // Corrupt the JSON, which holds the structure, in at least three of four cases. A digit becomes another
+            // random digit: the JSON stays readable, but its numbers may contradict each other.
             let at = if rng.below(4) == 0 { rng.below(glb.len()) } else { 20 + rng.below(json_length) };
             broken[at] = match rng.below(3) {
                 _ if broken[at].is_ascii_digit() => b'0' + rng.below(10) as u8,

@@ -28,7 +28,7 @@ impl Surface {
     }
 
     /// For each texel of a texture that covers the bounding rectangle, whether its centre lies in a triangle of the
-    /// surface. If `with_partial` is true, this includes centres within one texel of a triangle.
+    /// surface. If `with_partial` is true, the value is also true for centres within one texel of a triangle.
     pub fn covered_texels(&self, scene: &Scene, size: UVec2, with_partial: bool) -> Result<Vec<bool>> {
         let slack = if with_partial { 1.0 } else { CRACK };
         let (width, height) = (size.x as usize, size.y as usize);

@@ -144,7 +144,8 @@ fn nearest(scene: &Scene, chunks: &[Chunk], origin: Vec3, direction: Vec3) -> Op
     closest.is_finite().then_some(closest)
 }
 
-/// Two-sided ray-triangle test of Möller and Trumbore (1997). Returns the distance of the hit.
+/// Two-sided ray-triangle test of Möller and Trumbore (1997). Returns the distance of the hit; `None` if the ray misses
+/// the triangle.
 fn hit(origin: Vec3, direction: Vec3, a: Vec3, b: Vec3, c: Vec3) -> Option<f32> {
     let (ab, ac) = (b - a, c - a);
     let p = direction.cross(ac);

@@ -9,16 +9,17 @@ use crate::job::Job;
 use glam::Vec3;
 use std::f32::consts::FRAC_1_SQRT_2;
 
-/// The part of a face of the room that each pixel shows. Lengths have the unit of the positions in the features. The
-/// face is extended beyond its edges. If a pixel shows another face, its part is where its ray would meet the extended
-/// face.
+/// The area of a face of the room, and the position on it, that each pixel shows. The face's plane counts beyond the
+/// face's edges too: if a pixel shows another face, the values are those of the point where the pixel's ray meets this
+/// plane. Lengths have the unit of the positions in the features.
 pub struct Footprint {
-    /// Area that each pixel shows; infinite where the pixel's ray does not meet the face.
+    /// Area on the face's plane that each pixel shows; infinite where the pixel's ray does not meet the plane.
     pub area: Vec<f32>,
-    /// Coordinates of each pixel on the face, along two room axes; infinite where the pixel's ray does not meet the
-    /// face.
+    /// Coordinates of each pixel on the face's plane, along two room axes; infinite where the pixel's ray does not meet
+    /// the plane.
     pub at: Vec<[f32; 2]>,
-    /// Whether a pixel shows the face itself: its normal deviates by less than 45 degrees from the face's normal.
+    /// Whether each pixel shows the face itself: the pixel's normal in the features deviates by less than 45 degrees
+    /// from the face's normal.
     pub is_on_face: Vec<bool>,
 }
 
@@ -26,9 +27,9 @@ pub struct Footprint {
 const MIN_SINE: f32 = 1e-3;
 
 impl Footprint {
-    /// Computes the footprints of all pixels on a face with the given normal and signed distance from the camera
-    /// (`face::offset`). The area of a pixel is the length of the cross product of the position differences along its
-    /// row and its column. The coordinates run along two of the three room axes, without the axis nearest to the
+    /// Computes the footprints of all pixels on the face with the given normal and signed distance from the camera
+    /// (`face::offset`). The area of a pixel is |r × c|, where r and c are the changes of position per pixel along the
+    /// row and along the column. The coordinates run along two of the three room axes, without the axis nearest to the
     /// normal.
     pub fn new(features: &Image, (normal, offset): (Vec3, f32), job: Job) -> Result<Self> {
         let (width, height) = (features.width, features.height);

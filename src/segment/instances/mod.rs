@@ -42,27 +42,29 @@ use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
 use tree::Tree;
 
-/// Share of the stroke pixels, the darkest ones, that is ignored when the least brightness of the lamps is determined:
-/// hurried strokes run over the edges of lamps. [judged on 28 photos]
+/// The darkest pixels under the strokes, up to this share, do not count when the least brightness of the lamps is
+/// determined: hurried strokes run over the edges of lamps. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
 /// This quantile of L*, over the pixels under the positive strokes, is taken for white. [judged on 44 photos]
 const WHITE: f64 = 0.9;
-/// Lower bound of the L* that is taken for white; it corresponds to a luminance of 1e-5. Darker strokes lie on black
-/// and mark no lamp. [convention]
+/// Lower bound of the L* that is taken for white. It corresponds to a luminance of 1e-5 relative to display white.
+/// Strokes with a lower L* lie on black and mark no lamp. [convention]
 const MIN_WHITE: f32 = 0.01;
 /// Contours are sought at values of L* down to `1 - DEPTH` times the least L* of the lamps. [judged on 28 photos]
 const DEPTH: f32 = 0.4;
 
-/// Minimum contrast in L* between a region and the ring of pixels around it. A region with less contrast is noise on a
-/// surface. [judged on 44 photos]
+/// Minimum contrast in L* between a region and the ring of pixels around it. A region with less contrast is taken for
+/// noise. [judged on 44 photos]
 const MIN_CONTRAST: f64 = 3.0;
 
 /// Expected share of wrong pixels in a lamp under a stroke, and in a lamp without a stroke. [judged on 28 photos]
 const ERRORS: [f64; 2] = [0.03, 0.1];
 
-/// Finds the lamps under the positive strokes, and regions that look like them. Without positive strokes, proposes
-/// lamps ([`proposed`]); this needs a region and features of [`CHANNELS`] channels, otherwise the error is
-/// `Degenerate`. The first three channels of the features are CIELAB.
+/// Finds the lamps under the positive strokes, and regions that look like them. If no positive stroke covers a pixel,
+/// proposes lamps ([`proposed`]). The first three channels of the features are CIELAB.
+///
+/// Errors (`Degenerate`): no positive stroke covers a pixel, and `input.region` is missing or the number of channels is
+/// not [`CHANNELS`].
 pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     let (width, height) = (input.features.width, input.features.height);
     let paint = samples::ownership(input)?;
@@ -122,8 +124,8 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     Ok(Segmentation { is_proposed, ..found })
 }
 
-/// Keeps the nodes of the component tree that are brighter than the ring of pixels around them; the other nodes are
-/// noise on a surface.
+/// Keeps the nodes of the component tree that are brighter than the ring of pixels around them by at least
+/// [`MIN_CONTRAST`]; the other nodes are taken for noise on a surface.
 fn brighter_than_around(search: &Search, nodes: Vec<u32>) -> Result<Vec<u32>> {
     let nobody = try_vec(search.tree.node_of.len(), false)?;
     let mut kept = Vec::new();
@@ -176,8 +178,8 @@ fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Own
     let mut mask = Image::new(width, height, 1)?;
     mask.data.iter_mut().zip(&confidence.data).for_each(|(m, &c)| *m = f32::from(c > 0.5));
 
-    // Divide the expected number of wrong pixels by the number of pixels of the plane or, without a plane, of the
-    // photo.
+    // The error is the expected number of wrong pixels, divided by the number of pixels of the plane or, without a
+    // plane, of the photo. In doubtful regions, half of the pixels are expected to be wrong.
     let area = |nodes: &[u32]| nodes.iter().map(|&n| regions.area[n as usize]).sum::<f64>();
     let wrong = ERRORS[0] * area(painted) + ERRORS[1] * area(&similar.found) + 0.5 * area(&similar.doubtful);
     let looked_at = plane.map_or(mask.data.len(), |p| p.data.iter().filter(|v| **v > 0.5).count());

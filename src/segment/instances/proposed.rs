@@ -66,8 +66,8 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
         (1..tree.len()).filter(is_compact).map(|node| (node as u32, score(node))).collect();
     candidates.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
 
-    // Take candidates in the order of score. Regions inside or around a chosen region belong to that region, so skip
-    // them.
+    // Take candidates in the order of score. A region inside or around a chosen region counts as the same lamp, so skip
+    // it.
     let nobody = try_vec(tree.node_of.len(), false)?;
     let mut chosen = Disjoint::new(tree)?;
     let mut lamps: Vec<u32> = Vec::new();

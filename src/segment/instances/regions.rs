@@ -18,7 +18,7 @@ const GRADIENT_SMOOTHING: f32 = 1.0;
 const LEVELS_PER_L: f32 = 2.55;
 /// Brightness levels per doubling of L* above 100. Only photos with values above white reach them. [convention]
 const LEVELS_PER_DOUBLING: f32 = 32.0;
-/// The highest level. [convention]
+/// The highest brightness level. [convention]
 const MAX_LEVEL: f32 = 1023.0;
 
 /// The brightness and colour of the photo, prepared for the component tree.
@@ -102,7 +102,7 @@ pub struct OnFace {
     uu: Vec<f64>,
     vv: Vec<f64>,
     uv: Vec<f64>,
-    /// Sums of the squared areas of the pixels.
+    /// For each node, the sum of the squared areas of its pixels.
     squares: Vec<f64>,
 }
 
@@ -163,14 +163,15 @@ impl OnFace {
         let mean = |sums: &[f64]| sums[node] / area;
         let (u, v) = (mean(&self.u), mean(&self.v));
         let moments = [mean(&self.uu) - u * u, mean(&self.vv) - v * v, mean(&self.uv) - u * v];
-        // Add the variance within a pixel: a twelfth of the pixel's area, on average.
+        // Add the variance within a pixel. In a square it is a twelfth of the area; take the mean over the pixels,
+        // weighted by area.
         let [long, short] = ellipse(moments, mean(&self.squares) / 12.0);
         long / short.max(f64::MIN_POSITIVE)
     }
 }
 
-/// Lengths of the axes of the ellipse with the second moments xx, yy and xy, the long one first. `pixel`, the variance
-/// within a pixel, is added to xx and yy.
+/// Lengths of the axes of the ellipse with the central second moments xx, yy and xy, the long axis first. `pixel` is
+/// the variance within a pixel. It is added to xx and yy, and is the least variance along an axis.
 fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
     let (mean, spread) = (0.5 * (xx + yy) + pixel, (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
     [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
@@ -244,8 +245,9 @@ impl Regions {
     }
 
     /// Adds the edge between two neighbouring pixels to the contours of all nodes that contain the brighter pixel but
-    /// not the darker one. The sums go to the smallest node of the brighter pixel and are subtracted at the smallest
-    /// node of the darker pixel, so they cancel in common ancestors when `Tree::accumulate` adds up the nodes.
+    /// not the darker one. Gradient and length are added at the smallest node of the brighter pixel, and subtracted at
+    /// the smallest node of the darker pixel. When `Tree::accumulate` sums over subtrees, they therefore cancel in
+    /// every node that contains both pixels.
     fn add_edge(&mut self, tree: &Tree, photo: &Brightness, i: usize, j: usize) {
         let (a, b) = (tree.node_of[i] as usize, tree.node_of[j] as usize);
         if a == b || photo.levels[i] == photo.levels[j] {

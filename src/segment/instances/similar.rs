@@ -16,11 +16,12 @@ const DIMMER: f64 = 4.0;
 /// Maximum distance of a lamp's colour from the most similar colour of a lamp under a stroke, in a* and b*.
 /// [judged on 28 photos]
 const CHROMA: f64 = 12.0;
-/// Minimum contour gradient of a lamp ([`Regions::contour_gradient`]), relative to the median of the lamps under the
-/// strokes. It is below 1 because distant lamps are small and blurred. [judged on 28 photos]
+/// Minimum contour gradient of a lamp ([`Regions::contour_gradient`]), relative to the median contour gradient of the
+/// lamps under the strokes; both are first divided by their `sharpness`. The limit is below 1 because distant lamps are
+/// small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps
-/// under the strokes. [judged on 28 photos]
+/// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps under
+/// the strokes; both are first divided by their `sharpness`. [judged on 28 photos]
 const RING: f64 = 0.5;
 /// Minimum ratio of a lamp's solidity (see `Regions::solidity`) to the least solidity of the lamps under the strokes.
 /// [judged on 28 photos]
@@ -40,9 +41,8 @@ const MAX_FACE_AREA_RATIO: f64 = 4.0;
 /// lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// Minimum number of pixels of a measured lamp, relative to the largest lamp under a stroke. Smaller lamps under
-/// strokes are too small to measure. They do not count in the limits of area and aspect on the plane. [judged on 44
-/// photos]
+/// A lamp under a stroke is measured if its number of pixels is at least this share of that of the largest lamp under a
+/// stroke. Smaller lamps do not count in the limits of area and aspect on the plane. [judged on 44 photos]
 const MIN_MEASURED_SHARE: f64 = 0.01;
 /// Maximum ratio of a lamp's breadth (short axis of its ellipse, in pixels) to the breadth of the broadest lamp under a
 /// stroke. It applies only if the room has no box layout. [judged on 28 photos]
@@ -50,9 +50,10 @@ const MAX_BREADTH_RATIO: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
 const MIN_CUT_AREA: f64 = 0.06;
-/// At least this share of the ring of pixels around a lamp must lie on the plane. [judged on 28 photos]
+/// A region lies on the plane if at least this share of the ring of pixels around it does. [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
-/// At least this share of a region must lie on the face of the room that holds the lamps. [bench photos:tune]
+/// A region in a hole of the plane's mask must have at least this share of its pixels on the face of the room that
+/// holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
 /// A region is like a known lamp if its area divided by the lamp's area lies in `EQUAL_AREA`, and its aspect divided by
 /// the lamp's aspect lies in `EQUAL_ASPECT`. Two kinds of regions must be like a known lamp: those off the plane, and
@@ -60,8 +61,8 @@ const ON_FACE: f64 = 0.9;
 /// enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
-/// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the width of the
-/// wider lamp. [bench photos:tune]
+/// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the larger of
+/// their extents across the row. [bench photos:tune]
 const IN_ROW: f64 = 0.25;
 /// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
 /// [bench photos:tune]
@@ -100,8 +101,8 @@ const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0 };
 /// [judged on 44 photos]
 const BLUR: f64 = 2.0;
 
-/// Share of a lamp's contrast that is left after blur: the value at the centre of a disc with the lamp's area, after a
-/// Gaussian blur.
+/// Share of a lamp's contrast that is left after a Gaussian blur of variance [`BLUR`]: the value at the centre of a
+/// blurred disc that has the lamp's area and, before the blur, the value 1.
 fn sharpness(area: f64) -> f64 {
     1.0 - (-area / (std::f64::consts::TAU * BLUR)).exp()
 }
@@ -237,8 +238,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Whether a node has the size and shape of a known lamp, lies on the plane or in a hole of the plane's mask, and
-    /// has the contrast to its ring that [`ALIKE`] demands.
+    /// Whether a node has the size and shape of a lamp that a stroke marks or that was found before, lies on the plane
+    /// or in a hole of the plane's mask, and has the contrast to its ring that [`ALIKE`] demands.
     fn is_alike(&self, model: &Model, painted: &[u32], similar: &Similar, taken: &[bool], node: u32) -> Result<bool> {
         if !self.resembles_known_lamp(painted.iter().chain(&similar.found), node as usize) {
             return Ok(false);
@@ -351,8 +352,8 @@ impl Search<'_> {
         })
     }
 
-    /// Whether a lamp has nearly the size and shape of a node, and the node is round or in a row with that lamp. Round
-    /// lamps are often scattered, other lamps lie in rows.
+    /// Whether one of `lamps` has nearly the size and shape of a node, and the node is round or in a row with that
+    /// lamp. Round lamps are often scattered, other lamps lie in rows.
     fn resembles_known_lamp<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         let is_round = self.regions.surface.as_ref().is_some_and(|surface| surface.aspect(node) <= ROUND);
         self.lamps_of_equal_shape(lamps, node).any(|&lamp| is_round || self.is_in_row(node, lamp))
@@ -380,7 +381,8 @@ impl Search<'_> {
 
     /// Likeness of a node to the lamps under the strokes, apart from its surroundings: the least of its likenesses in
     /// brightness, colour and contour gradient. A value of at least 1 means that the node meets all limits. The
-    /// likeness is 0 if size, shape or negative strokes rule the node out.
+    /// likeness is 0 if size, shape or negative strokes rule the node out, or if the likeness in contour gradient is
+    /// below [`NEARLY`].
     fn likeness(&self, model: &Model, node: usize, limits: Limits) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];

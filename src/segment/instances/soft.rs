@@ -18,9 +18,9 @@ const OUTSIDE: f32 = 0.499;
 /// lamp; the inside of a ring-shaped lamp is larger and stays open. [judged on 44 photos]
 const HOLE: f64 = 0.05;
 
-/// Writes the confidence of one region, given as a node of the component tree, to the image `confidence`; where
-/// regions overlap, the maximum counts. Across the contour, the confidence follows the brightness and rises from 0 to
-/// 1 within about one pixel. Outside the region, only pixels of the plane get a confidence.
+/// Writes the confidence of one region, given as a node of the component tree, to the image `confidence`. Where regions
+/// overlap, the larger confidence remains. Across the contour, the confidence follows the brightness and rises from 0
+/// to 1 within about one pixel. Outside the region, only pixels of the plane within `MAX_DISTANCE` get a confidence.
 pub fn add(node: u32, search: &Search, confidence: &mut Image) -> Result<()> {
     let Search { tree, regions, photo, plane, .. } = *search;
     let filled = filled(tree.pixels(node), photo)?;
@@ -59,7 +59,8 @@ fn filled(pixels: &[u32], photo: &Brightness) -> Result<Vec<u32>> {
         if label[start] != OPEN {
             continue;
         }
-        // Flood one connected part outside the region. It is a hole unless it reaches the border of the bounding box.
+        // Flood one connected set of pixels outside the region. It is a hole unless it reaches the border of the
+        // bounding box.
         hole.clear();
         try_push(&mut hole, start as u32)?;
         label[start] = WALKED;

@@ -90,7 +90,7 @@ impl Bounds {
         self.x0 == 0 || self.y0 == 0 || self.x1 == photo.width || self.y1 == photo.height
     }
 
-    /// Width and height.
+    /// Width and height of the rectangle in pixels.
     pub fn size(&self) -> [usize; 2] {
         [self.x1 - self.x0, self.y1 - self.y0]
     }

@@ -144,7 +144,7 @@ fn confidence_is_one_half_on_the_contour() {
         assert_eq!(*mask > 0.5, *confidence > 0.5);
         assert!((0.0..=1.0).contains(confidence));
     }
-    // The 0.5 level across the left side of the lamp must lie within half a pixel of x = 20.
+    // The confidence must cross 0.5 within half a pixel of the lamp's left side, which lies at x = 20.
     let row = |x: usize| segmented.confidence.pixel(x, 26)[0];
     let x = (15..25).find(|&x| row(x) <= 0.5 && row(x + 1) > 0.5).unwrap();
     let crossing = x as f32 + 0.5 + (0.5 - row(x)) / (row(x + 1) - row(x));

@@ -8,8 +8,8 @@ use crate::segment::{Input, Params, run};
 const WIDTH: usize = 160;
 const HEIGHT: usize = 120;
 
-/// A photo with one feature: about 1 in the upper half, 0 in the lower half, and `strange` at the right of the upper
-/// half.
+/// A photo with one feature: about 1 in the upper left (x < 100), about `strange` in the upper right, and about 0 in
+/// the lower half.
 fn photo(strange: f32) -> Image {
     Image::from_fn(WIDTH, HEIGHT, |x, y| {
         let noise = 0.05 * Rng::new(3, &[x as u64, y as u64]).normal() as f32;
@@ -127,7 +127,7 @@ fn painted_lamps_no_brighter_than_the_plane_raise_a_warning_with_a_place_on_the_
     // The whole plane is darker than one lamp, and half of the plane is darker than the other.
     assert!((dim.severity - 0.75).abs() < 0.01, "{dim:?}");
     assert!((dim.place.unwrap().x - 40.0).abs() < 4.0, "{dim:?}");
-    // At equal lightness the probability is one half.
+    // If a lamp and the plane have equal lightness, the severity is one half.
     let flat = Image::from_fn(WIDTH, HEIGHT, |_, _| [7.0]).unwrap();
     assert_eq!(dim_lamps(&flat, &plane, &[lamp(100.0)]).unwrap().severity, 0.5);
     // Strokes marked "not light" count as plane. If plane strokes run over lamps, the comparison with the "not light"

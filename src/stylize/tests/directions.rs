@@ -40,14 +40,14 @@ fn the_normals_guide_strokes_that_follow_the_shapes_and_no_others() {
     let (with, without) = decided(&rings, None);
     assert_eq!((with.report.normals_weight, without.report.normals_weight), (0.5, 0.0));
     assert!(with.field.at != without.field.at);
-    // Neither do slanted strokes, nor grain without strokes.
+    // Slanted strokes do not follow the shape, and grain has no strokes: in both cases the normals are not used.
     let slanted = drawn(&light, |x, y| 0.9 * x + 1.1 * y);
     for art in [&slanted, &drawn(&light, |_, _| 0.0)] {
         let (with, without) = decided(art, None);
         assert_eq!(with.report.normals_weight, 0.0);
         assert!(with.image == without.image && with.field.at == without.field.at);
     }
-    // The frames of a sequence do as the first one.
+    // Later frames of a sequence take over the decision of the first frame from its memory.
     let (first, _) = decided(&slanted, None);
     assert_eq!(decided(&rings, Some(&first.memory)).0.report.normals_weight, 0.0);
     assert_eq!(decided(&slanted, Some(&with.memory)).0.report.normals_weight, 0.5);

@@ -29,7 +29,8 @@ fn patches_astride_a_silhouette_keep_no_match() {
         &level::Level::new(&problem, &Params::default(), 1.0, 1, monitor.job()).unwrap().allowed,
     )
     .unwrap();
-    // The right part of the picture has moved left by 4 pixels, and the last column was not visible.
+    // The right part of the picture has moved left by 4 pixels, and the last column was not visible in the previous
+    // frame.
     let motion = |x: usize| match x {
         0..30 => [0.0, 0.0],
         30..59 => [4.0, 0.0],
@@ -58,7 +59,8 @@ fn paint_follows_light_that_fades_slowly() {
         image
     };
     let still = Image::new(90, 70, 2).unwrap();
-    // Returns the mean lightness of the last of nine frames.
+    // Returns the mean lightness of the last of nine frames. `remembers` says whether each frame gets the memory of the
+    // previous frame.
     let last = |remembers: bool| {
         let mut output = stylise(&input(&art, &[guide(&a, &target(0))]), &Params::default()).unwrap();
         for t in 1..9 {

@@ -89,8 +89,9 @@ fn draco_file(stream: &[u8], edit: impl FnOnce(&mut Value)) -> Vec<u8> {
     })
 }
 
-/// Describes each triangle by the positions and texture coordinates of its corners and sorts the descriptions. Meshes
-/// that differ only in the order of their triangles compare equal.
+/// Describes each triangle by the positions and texture coordinates of its corners, and sorts the descriptions. Two
+/// meshes have equal results if they differ only in the order of triangles, or in the corner with which each triangle
+/// begins.
 fn soup(mesh: &Mesh) -> Vec<String> {
     let corner = |&i: &u32| format!("{:?} {:?}", mesh.positions[i as usize], mesh.uvs[0][i as usize]);
     let triangle = |t: &[u32; 3]| {

@@ -186,7 +186,8 @@ fn specular_and_glossiness_become_metallic_and_rough() {
     assert!(metal.metallic > 0.99 && metal.roughness == 0.25 && metal.alpha == 0.5, "{metal:?}");
     assert!(scene.unrendered.is_empty() && scene.textures.is_empty());
 
-    // With a texture, base colour, roughness and metalness become textures too, and they survive an export and import.
+    // If the material has a texture, its base colour and its roughness with metalness become two textures. Both survive
+    // an export and import.
     let scene = with(&|settings| settings["diffuseTexture"] = json!({ "index": 0, "texCoord": 1 }));
     let metal = &scene.materials[0];
     assert_eq!((metal.base_color, metal.metallic, metal.roughness, metal.alpha), (Vec3::ONE, 1.0, 1.0, 1.0));
