@@ -18,9 +18,8 @@ use crate::simd::widest;
 /// starts new sums.
 const BAND: usize = 64;
 /// Factor on the cost of the centred window. A shifted window is preferred only if its cost is below this share of the
-/// cost of the centred window. On a plane with independent noise, simulated windows of radius 4 are shifted in one of
-/// 1500 pixels at 0.5, in one of 9 at 0.7; from radius 6 on, in fewer than one of 1000 at any value up to 0.6. With a
-/// smaller value, windows stay centred on creases that are faint compared with the noise. [convention]
+/// cost of the centred window. With a value near 1, noise alone shifts windows on planes. With a much smaller value,
+/// windows stay centred on creases that are faint compared with the noise. [convention]
 const PREFER_CENTRED: f32 = 0.5;
 /// Offsets, in radii, from a pixel to the centres of its windows. Of equally good windows, the first is taken.
 const SHIFTS: [[isize; 2]; 9] = [[0, 0], [-1, -1], [1, -1], [-1, 1], [1, 1], [0, -1], [-1, 0], [1, 0], [0, 1]];

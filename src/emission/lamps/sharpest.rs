@@ -22,8 +22,8 @@ const MAX_DIFFERENCE: f64 = 0.5;
 /// similar lamps. [origin not recorded]
 const MIN_SHARP_SHARE: f64 = 0.4;
 
-/// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest dark share of its kind by more
-/// than this value. Values from 0.02 to 0.1 change which lamps are shown, but the lattice of no photo.
+/// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest dark share of its kind by
+/// more than this value. Values from 0.02 to 0.1 change which lamps are shown, but the lattice of no photo.
 /// [bench photos:real]
 const MAX_OBSTRUCTED: f64 = 0.05;
 
