@@ -165,7 +165,8 @@ impl Surfaces {
         self.material.cast(material as u32 + 1);
     }
 
-    /// Adds these sums to the f32 totals that the film keeps for the pixel.
+    /// Adds a surface attribute of these samples to the f32 totals that the film keeps for the pixel. Votes for an
+    /// index are merged instead.
     pub fn add_to_totals(&self, aov: Aov, totals: &mut [f32]) {
         match aov {
             Aov::Object => self.object.join(totals),

@@ -143,7 +143,7 @@ struct Lamp {
     frame: [DVec3; 3],
     opening: Opening,
     distribution: usize,
-    /// Luminance of the light's colour, by which the intensity distribution is multiplied.
+    /// Luminance of the light's RGB colour (without unit), by which the intensity distribution is multiplied.
     factor: f64,
 }
 
@@ -176,8 +176,8 @@ impl Lamp {
         (area > largest * EDGE_ON).then_some(ApparentLamp { towards, distance, area, candela })
     }
 
-    /// Returns which share of the opening's projected area is visible, and the mean squared transmittance over the
-    /// visible part. The transmittance is squared because the rating sums L² ω.
+    /// Returns which share of the opening's projected area is visible, and the mean, over the visible part, of the
+    /// squared transmittance of the panes in front of it. The transmittance is squared because the rating sums L² ω.
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);

@@ -42,7 +42,8 @@ pub struct Emitters {
     tilings: Vec<Tiling>,
     /// For each tile of each tiling, the index of the tile's piece; `NONE` for dark tiles.
     piece_of_tile: Vec<u32>,
-    /// All pieces. Piece indices count the undivided triangles (`uniform`) first, then the emissive tiles.
+    /// The undivided triangles (`uniform`) and the emissive tiles. Piece indices count the triangles first, then the
+    /// tiles.
     uniform: Vec<UniformTriangle>,
     tiles: Vec<Tile>,
     /// The patches of luminaires' faces. Their piece indices follow the indices of the tiles.

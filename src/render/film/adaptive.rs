@@ -31,8 +31,9 @@ use crate::render::params::Params;
 /// Paths per pixel, in all, after the first pass that follows the coarse image.
 /// [convention: one path per replication (point sequence) of a pixel]
 const FIRST_PASS_PATHS: u32 = 4;
-/// Paths per pixel, in all, before the first adaptive pass. The bench prints the saving and the bias of an error
-/// target; the bias is larger if passes adapt to fewer paths. [bench error_control]
+/// Paths per pixel, in all, before the first adaptive pass. With fewer paths, the allocation to tiles follows the noise
+/// more closely, which increases the bias. The bench prints this bias, and the paths that an error target saves. [bench
+/// error_control]
 pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Limit on the paths per pixel of a tile, as a multiple of `samples`. Without a limit, light that few paths find (a
 /// caustic, or the glossy reflection of a small lamp) would take all paths. At the limit, the error of a tile is 1/8 of
@@ -175,9 +176,9 @@ impl<'p> AdaptiveSampler<'p> {
         let deviations: Vec<f64> =
             accumulator.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
         // Give each tile n = k d paths per pixel. Here d is the standard deviation of the tile's paths, raised where
-        // the neighbouring tiles vary more, and k is the same for all tiles. If s is the variance of a single path,
-        // the mean square error of the image is mean(s / (k d)). Find the k that meets the target, or the k that
-        // spends `samples` paths per pixel if that is smaller.
+        // the neighbouring tiles vary more, and k is the same for all tiles. If s is the variance of a tile's single
+        // path, the mean square error of the image is mean(s / (k d)). Take the smaller of two values of k: the one
+        // that meets the target, and the one that spends `samples` paths per pixel.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
                 / f64::from(whole.pixels)

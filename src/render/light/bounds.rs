@@ -207,7 +207,7 @@ impl BoundsLanes {
             let turned = if cosine >= self.full_cosine[i] { 1.0 } else { turned };
             let emitted = turned + self.box_extent[i] * inverse;
             // Bound the cosine at the receiver. The component of `d` along the normal is largest at a corner of the
-            // box; it is divided by the distance of the centre.
+            // box. Divide this component by the distance from the receiver to the centre of the box.
             let reached = n.x * d[0] + n.y * d[1] + n.z * d[2];
             let widened = m.x * self.half[0][i] + m.y * self.half[1][i] + m.z * self.half[2][i];
             let received = (reached + widened) * inverse;

@@ -391,15 +391,16 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
 
 #[test]
 fn discs_and_spheres_light_by_their_form_factors() {
-    // A disc overhead, with a radius of half its height: E = π L r² / (r² + h²). The area of the polygon with 720
-    // corners is 1e-5 smaller.
+    // A disc of radius r = 1 m, at a height of h = 2 m above the floor: E = π L r² / (r² + h²). The area of the polygon
+    // with 720 corners is 1e-5 smaller.
     let rim = |i: usize| Vec3::new((TAU * i as f32 / 720.0).cos(), 2.0, (TAU * i as f32 / 720.0).sin());
     let mut disc = Mesh { material: 1, positions: (0..720).map(rim).collect(), ..Mesh::default() };
     disc.triangles = (1..719).map(|i| [0, i, i + 1]).collect();
     let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
     assert_close(measured, PI / 5.0, 5e-5, "disc");
 
-    // A sphere overhead: E = π L r² / d². Its facets lie within the sphere and make the irradiance up to 1 % smaller.
+    // A sphere of radius r = 1 m, with its centre d = 3 m above the floor: E = π L r² / d². The facets lie within the
+    // sphere and make the irradiance up to 1 % smaller.
     let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
     let at = |i: usize, j: usize| {
         let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);

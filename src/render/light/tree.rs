@@ -140,7 +140,8 @@ impl LightTree {
         (index as u32, Bounds::union(&bounds))
     }
 
-    /// Returns the number of clusters. A cluster has a lower index than the clusters within it.
+    /// Returns the number of clusters; a tree without nodes counts as one cluster. A cluster has a lower index than the
+    /// clusters within it.
     pub fn clusters(&self) -> usize {
         self.nodes.len().max(usize::from(!self.fixed.is_empty()))
     }
