@@ -20,8 +20,9 @@ pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
 /// Smallest perceptual roughness at which neighbouring pixels may share a path vertex. On smoother surfaces, their
 /// slightly different view directions would see different highlights. At this roughness, the microfacets tilt by about
-/// 0.1² = 0.01 rad. A block of 4 pixels, in a view of 60° across 1000 pixels, spans 0.004 rad. Estimates with shared
-/// vertices are unbiased, so any value gives the same expected image. [convention]
+/// 0.1² = 0.01 rad. A block of 4 pixels, in a view of 60° across 1000 pixels, spans only 0.004 rad, so its pixels see
+/// nearly the same highlight. Estimates with shared vertices are unbiased, so any value gives the same expected image.
+/// [convention]
 const SHAREABLE_ROUGHNESS: f32 = 0.1;
 
 /// The BSDF parameters of a material at one surface point.

@@ -88,8 +88,8 @@ impl Rating {
 /// Smallest and largest solid angle, in steradians, for which CIE 117 is valid. [convention]
 const MIN_SOLID_ANGLE: f64 = 3e-4;
 const MAX_SOLID_ANGLE: f64 = 0.1;
-/// Smallest horizontal length of the normalised line of sight. Steeper lines of sight are refused, because the
-/// position index needs to know which way is up in the field of view. [convention]
+/// Smallest length of the horizontal component of the unit line of sight. Steeper lines of sight are refused, because
+/// the position index needs to know which way is up in the field of view. [convention]
 const MIN_HORIZONTAL: f64 = 0.02;
 /// An opening counts as seen edge-on if its projected area towards the eye is at most this multiple of its largest
 /// projected area along one of its own axes. [rounding]

@@ -77,8 +77,8 @@ const LEARNING_PATHS: u32 = 4;
 /// A calculation skips the learning if it traces fewer than this many times the paths that the learning would trace.
 /// [convention]
 const MIN_RATIO: usize = 50;
-/// Combined (by XOR) with the seed for the paths from which a calculation learns, so that these paths and the paths of
-/// the calculation itself use different random numbers.
+/// A calculation learns from paths whose seeds are derived from its own seed XOR `SALT`. These paths and the paths of
+/// the calculation itself then use different random numbers.
 const SALT: u64 = 0x6c65_6172_6e69_6e67;
 
 /// Computes the illuminance at the points of `place`. Call it on the library's own thread pool.
@@ -215,8 +215,8 @@ fn receivers(world: &World, place: &CalculationPoints, params: &Params) -> Resul
     }
 }
 
-/// Finds for each texel the triangle that covers the texel's centre, and the barycentric coordinates of the centre.
-/// Where triangles overlap, the first one is used.
+/// Finds for each texel the triangle that covers the texel's centre, and the barycentric coordinates of the centre;
+/// `None` if no triangle does. If several triangles cover it, the one with the smallest index is used.
 fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32, Vec2)>>> {
     let meshes = &world.scene().meshes;
     let found = meshes

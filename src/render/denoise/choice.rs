@@ -22,8 +22,8 @@ use super::planes::{Classes, Planes};
 use crate::error::Result;
 use crate::job::Job;
 
-/// Radius in pixels of the neighbourhood over which estimated errors are averaged, and over which choices are
-/// smoothed. [bench filter]
+/// Radius in pixels of the neighbourhood over which estimated errors are averaged (`ERROR_RADIUS`), and over which the
+/// choices of pixels are smoothed (`CHOICE_RADIUS`). [bench filter]
 const ERROR_RADIUS: usize = 16;
 const CHOICE_RADIUS: usize = 4;
 /// Squared errors are divided by r² + m², where r is the mean radiance around the pixel and m is `MIN_LIGHT` times the
@@ -49,7 +49,7 @@ pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> 
     let choices = Planes::from_rows([width, height, passes.len() + 1], job.part(0.6, 0.7), |y, row| {
         for x in 0..width {
             let best = (0..=passes.len()).min_by(|&i, &j| errors.row(y, i)[x].total_cmp(&errors.row(y, j)[x]));
-            // Where the variance is unknown, take the last pass.
+            // Where the variance is unknown, no error can be estimated: take the last pass.
             let choice = if light.is_known(x, y) { best.unwrap_or(0) } else { passes.len() };
             row[choice * width + x] = 1.0;
         }

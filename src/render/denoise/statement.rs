@@ -25,7 +25,8 @@ use crate::job::Job;
 const NORMAL_95: f32 = 1.959_964;
 /// Side of the squares over which the bias is averaged, in pixels. [convention]
 const SQUARE: usize = 8;
-/// Radius in pixels over which the errors of the pixels are averaged for their intervals. [bench filter]
+/// Radius in pixels of the neighbourhood over which squared errors are averaged to compute a pixel's interval.
+/// [bench filter]
 const INTERVAL_RADIUS: usize = 8;
 /// Error common to both halves, as a share of the variance that the filter removes: for pixels within surfaces, and for
 /// pixels at edges of surfaces. [bench filter]

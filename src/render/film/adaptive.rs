@@ -8,9 +8,9 @@
 //!    doubles the paths of the tiles with the largest ratio of required to present paths.
 //!
 //! If the target limits the error of the whole image, the required number of paths of a tile is proportional to the
-//! standard deviation of its paths (Neyman 1934). For a target on the relative error, this deviation is divided by the
-//! radiance of the pixel. If the target limits the error of each pixel, the required number follows from the errors of
-//! the tile's own pixels.
+//! standard deviation of its paths (Neyman 1934). For a target on the relative error, each pixel's deviation is first
+//! divided by the pixel's radiance. If the target limits the error of each pixel, the required number follows from the
+//! errors of the tile's own pixels.
 //!
 //! A tile in which no bright path has been found yet has a small variance by chance. If the sampling of such a tile
 //! stopped early, the image would become too dark. Decisions are therefore made for whole tiles and take neighbouring
@@ -32,8 +32,8 @@ use crate::render::params::Params;
 /// [convention: one path per replication (point sequence) of a pixel]
 const FIRST_PASS_PATHS: u32 = 4;
 /// Paths per pixel, in all, before the first adaptive pass. With fewer paths, the allocation to tiles follows the noise
-/// more closely, which increases the bias. The bench prints this bias, and the paths that an error target saves. [bench
-/// error_control]
+/// more closely, which increases the bias. The bench prints this bias, and the paths that an error target saves.
+/// [bench error_control]
 pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Limit on the paths per pixel of a tile, as a multiple of `samples`. Without a limit, light that few paths find (a
 /// caustic, or the glossy reflection of a small lamp) would take all paths. At the limit, the error of a tile is 1/8 of
@@ -125,7 +125,8 @@ impl<'p> AdaptiveSampler<'p> {
                 break;
             }
             let (present, pixels) = (statistics[tile].max_paths, f64::from(statistics[tile].pixels));
-            // If too few paths are left to double those of the tile, use the paths that are left.
+            // Double the tile's paths, but do not exceed `max_paths` per pixel or the paths that are left for the
+            // image.
             let left = ((allowed - spent).max(0.0) / pixels) as u32 / REPLICATIONS * REPLICATIONS;
             let more = present.min(max_paths - present).min(left);
             counts[tile] = present + more;
@@ -159,8 +160,10 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(target_paths)
     }
 
-    /// Raises each tile's entry in `target_paths` to the tile's number in the allocation that meets `target`, an error
-    /// of the whole image, with the fewest paths. The allocation has on average at most `samples` paths per pixel.
+    /// Raises each tile's entry in `target_paths` to at least the number of paths that an allocation gives to the tile.
+    /// This allocation meets `target`, an error of the whole image, with the fewest paths. If it would take more than
+    /// `samples` paths per pixel on average, it is scaled down to `samples`. Does nothing if the image meets `target`
+    /// already.
     fn add_allocation(
         &self,
         accumulator: &Accumulator,

@@ -64,8 +64,8 @@ impl Bounds {
     /// Returns the bounds of all `parts` together; there must be at least one part.
     pub fn union(parts: &[Self]) -> Self {
         let mut whole = parts[0];
-        // Average the axes, weighted by intensity. The axis of a two-sided light may point either way, so it is
-        // flipped into the half-space of the other axes.
+        // Average the axes, weighted by intensity. A two-sided light may count with either sign of its axis; take the
+        // sign that agrees with the sum so far.
         let mut sum = Vec3::ZERO;
         whole.intensity = 0.0;
         for part in parts {

@@ -54,7 +54,8 @@ impl Lights {
         match &self.split {
             Some(split) if split.is_same(&weights) && counted > ENOUGH => return Ok(Some(lights)),
             Some(_) => {}
-            // Keep one selector for all lights. After `ENOUGH` samples, stop counting as well.
+            // Too few samples went to unlikely lights: keep one selector for all lights. After `ENOUGH` samples, stop
+            // counting as well.
             None if (unlikely as f64) < MIN_GAIN * counted as f64 => {
                 lights.survey = lights.survey.filter(|_| counted < ENOUGH);
                 return Ok(Some(lights));

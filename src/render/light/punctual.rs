@@ -31,9 +31,9 @@ pub enum Shape {
     Measured(Measured),
 }
 
-/// The spot cone of glTF. Let c be the cosine of the angle to `axis`. The intensity is multiplied by x², where x is `(c
-/// - outer) * scale`, clamped to [0, 1]. Here `outer` is cos(outer angle), and `scale` is 1 / (cos(inner angle) -
-/// `outer`), at most 1e4.
+/// The spot cone of glTF. Let c be the cosine of the angle to `axis`. The intensity is multiplied by x², where x is
+/// `(c - outer) * scale`, clamped to [0, 1]. Here `outer` is cos(outer angle), and `scale` is
+/// `1 / (cos(inner angle) - outer)`, at most 1e4.
 pub struct Cone {
     axis: Vec3,
     outer: f32,

@@ -255,8 +255,8 @@ fn any_number_of_threads_builds_the_same_tree() {
 
 #[test]
 fn regular_patterns_of_lamps_make_the_same_tree_at_any_scale() {
-    // In a regular pattern, several splits have equal cost, and centres of lamps lie on borders of bins. The scale
-    // changes the rounding, but must not change the choice of the split or of the bins.
+    // In a regular pattern, several splits have equal cost, and centres of lamps lie on borders of bins. The scale of
+    // the scene changes the rounding of costs and centres, but must not change the choice of the split or of the bins.
     let receivers = receivers(4, Vec3::splat(2.0), &mut Rng::new(44, &[]));
     let pmfs = |scale: f32, side: usize| {
         let lamp = |i: usize| {
