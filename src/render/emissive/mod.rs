@@ -5,8 +5,8 @@
 //! piece, points are sampled in proportion to the emission of their texel; the area pdf is the emission at the point
 //! divided by the intensity of the piece. So thousands of small lamps in one texture cost as much as one lamp, and no
 //! sample falls on a dark texel. Emission textures are looked up without interpolation, because interpolated light
-//! would spread to dark texels. A triangle whose texture coordinates have no area or span too many texels is one piece
-//! and is sampled uniformly.
+//! would spread to dark texels. A textured triangle is one piece and is sampled uniformly if its texture coordinates
+//! have no area, lie within a single texel, span too many texels, or lie too far from 0.
 //!
 //! The faces of luminaires ([`super::luminaires`]) are emitters, too. A patch of a face is one piece. Each triangle of
 //! the patch is selected with the same probability, and points on it are sampled uniformly. The emission of faces

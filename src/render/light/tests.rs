@@ -74,7 +74,7 @@ fn sampled_lights_follow_the_pmf_of_the_tree() {
                     Some((light, pmf, rest)) => {
                         counts[light] += 1.0;
                         assert!((0.0..1.0).contains(&rest));
-                        // Compare loosely: the two pmfs multiply the same factors in opposite order.
+                        // Compare loosely: `sample` and `pmf` multiply the same factors in opposite order.
                         assert!((f64::from(pmf) / stated[light] - 1.0).abs() < 1e-5);
                     }
                 }
@@ -343,7 +343,8 @@ fn assert_close((mean, error): (f64, f64), expected: f64, slack: f64, what: &str
     assert!((mean - expected).abs() < 4.0 * error + slack * expected, "{what}: {mean} ± {error}, expected {expected}");
 }
 
-/// Returns the irradiance at the origin, facing up, from a polygon of radiance 1 above the horizon (Lambert 1760).
+/// Returns the irradiance of a surface at the origin that faces up, from a polygon of radiance 1 above the horizon
+/// (Lambert 1760).
 fn lambert(corners: &[Vec3]) -> f64 {
     let edge = |i: usize| {
         let a = corners[i].as_dvec3().normalize();
@@ -538,7 +539,7 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
         disagreed += usize::from((stated / sample.pdf - 1.0).abs() > 1e-4);
     }
     // Rounding may place a sampled point in a neighbour of the tile from which the point was drawn. Only at such points
-    // may the two pdfs disagree.
+    // may the pdf of the sample differ from the result of `surface_pdf`.
     assert!(surfaces > 5000 && disagreed <= 5, "{disagreed} of {surfaces}");
 }
 
