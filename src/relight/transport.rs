@@ -72,8 +72,8 @@ struct Batch {
     count: u32,
 }
 
-/// Second moments of the light at target points. They are estimated by products of two independent paths from the same
-/// point, which are unbiased; squares of single paths would include noise.
+/// Second moments of the light at target points, estimated by the product of the light of two independent paths from
+/// the same point. This product is unbiased; the square of one path's light would add the path's variance.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Pairs {
     /// The square of the response, which is the light of the single bin.
@@ -130,11 +130,12 @@ impl<'a> Batches<'a> {
         let part = job.part(f64::from(first) / f64::from(max_per_batch), f64::from(last) / f64::from(max_per_batch));
         let (world, points, bins) = (self.world, self.points, &self.bins);
         let (seed, paired) = (self.seed, self.paired);
-        // Process whole batches: their sums are then independent of the number of threads.
+        // Let one thread process a whole batch. The order of the additions in a batch, and so its rounded sums, then do
+        // not depend on the number of threads.
         exec::for_rows(&mut self.batches, 1, part, |index, batch| {
             let seed = hash(seed, &[index as u64]);
             if paired {
-                // A pair takes two paths: trace the pairs that begin in this round.
+                // Pair i consists of paths 2 i and 2 i + 1. Trace the pairs whose first path is new in this round.
                 batch[0].extend_pairs(world, points, bins, seed, first.div_ceil(2)..last.div_ceil(2), job);
             } else {
                 batch[0].extend(world, points, bins, seed, first..last, job);

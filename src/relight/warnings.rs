@@ -6,7 +6,7 @@ use crate::warning::{Code, Warning};
 const CHANNELS: [&str; 3] = ["red", "green", "blue"];
 
 impl Solution {
-    /// Returns warnings about a solution that may be wrong.
+    /// Returns at most two warnings: that the target is not reached, and that the target's photo is clipped.
     pub fn warnings(&self) -> Vec<Warning> {
         [self.unreachable(), self.clipped()].into_iter().flatten().collect()
     }

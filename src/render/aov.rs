@@ -1,10 +1,11 @@
 //! Arbitrary output variables (AOVs): attributes of the first surface along each camera ray, such as distance,
 //! position, normal, albedo and mesh index, accumulated per pixel.
 //!
-//! Clear panes and mirrors count as surfaces. The albedo and the coverage of a pixel are means over all its samples,
-//! so that they composite like radiance. Distances, positions and normals are means over the samples that hit a
-//! surface. An index cannot be averaged: a pixel gets the index that more than half of its hits have. Without such a
-//! majority it gets the index of any one of its hits (one-pass majority vote with one counter, Boyer and Moore 1981).
+//! Clear panes and mirrors count as surfaces. The albedo and the coverage of a pixel are means over all its samples;
+//! samples of the background count as 0. Distances, positions and normals are means over the samples that hit a
+//! surface; a mean normal is scaled to unit length. An index cannot be averaged: a pixel gets the index that more than
+//! half of its hits have. Without such a majority it gets the index of any one of its hits (one-pass majority vote with
+//! one counter, Boyer and Moore 1981).
 
 use super::ballot;
 use super::path::PrimaryHit;
@@ -165,7 +166,8 @@ impl Surfaces {
         self.material.cast(material as u32 + 1);
     }
 
-    /// Adds these sums to the f32 totals that the film keeps for the pixel.
+    /// Adds a surface attribute of these samples to the f32 totals that the film keeps for the pixel. Votes for an
+    /// index are merged instead.
     pub fn add_to_totals(&self, aov: Aov, totals: &mut [f32]) {
         match aov {
             Aov::Object => self.object.join(totals),

@@ -20,8 +20,9 @@ pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
 /// Smallest perceptual roughness at which neighbouring pixels may share a path vertex. On smoother surfaces, their
 /// slightly different view directions would see different highlights. At this roughness, the microfacets tilt by about
-/// 0.1² = 0.01 rad. A block of 4 pixels, in a view of 60° across 1000 pixels, spans 0.004 rad. Estimates with shared
-/// vertices are unbiased, so any value gives the same expected image. [convention]
+/// 0.1² = 0.01 rad. A block of 4 pixels, in a view of 60° across 1000 pixels, spans only 0.004 rad, so its pixels see
+/// nearly the same highlight. Estimates with shared vertices are unbiased, so any value gives the same expected image.
+/// [convention]
 const SHAREABLE_ROUGHNESS: f32 = 0.1;
 
 /// The BSDF parameters of a material at one surface point.
@@ -36,8 +37,8 @@ pub struct BsdfParams {
     /// Share of the light that continues in a straight line through the material, before the reflection loss at the
     /// top layer is subtracted; 0 for opaque materials.
     pub transmission: Vec3,
-    /// Reflectance of the dielectric part alone at normal incidence. It determines the attenuation of the diffuse
-    /// layer.
+    /// Reflectance of the material's dielectric component at normal incidence, without its metallic component. The
+    /// attenuation of the diffuse layer and of the transmitted light follows from it.
     pub dielectric_f0: f32,
 }
 
@@ -237,8 +238,8 @@ impl<'a> Layers<'a> {
         let s = bsdf_params;
         let (t, b) = normal.any_orthonormal_pair();
         let wo = to_local(&[t, b, normal], wo);
-        // Compute two albedos for the direction of the viewer: `top` is the largest channel of the top layer's albedo,
-        // and `coat_albedo` is the albedo of the dielectric part of the top layer alone.
+        // Compute two albedos for the direction of the viewer. `top` is the largest channel of the top layer's albedo.
+        // `coat_albedo` is the albedo that the top layer would have without its metallic component.
         let has_top = s.f90 > 0.0;
         let lobe = match table {
             Some(table) if has_top && s.roughness >= MIRROR_ROUGHNESS => {
@@ -361,9 +362,8 @@ impl<'a> TopAlbedo<'a> {
 /// If the shading normal faces away from the viewer, tilts it until it is almost perpendicular to the view direction,
 /// so that the viewer sees the surface at a grazing angle.
 fn face_viewer(normal: Vec3, wo: Vec3) -> Vec3 {
-    // Smallest cosine between the tilted normal and the viewer's direction. Any value from 1e-4 to 1e-2 is far above
-    // the rounding of a cosine in f32 (3e-7), so that the tilted normal faces the viewer for certain, and is still a
-    // grazing angle. [rounding]
+    // Smallest cosine between the tilted normal and the direction of the viewer. Any value from 1e-4 to 1e-2 is a
+    // grazing angle, and far above the rounding of a cosine in f32 (3e-7). [rounding]
     const MIN_COSINE: f32 = 1e-3;
     let cosine = normal.dot(wo);
     if cosine >= MIN_COSINE { normal } else { (normal + wo * (MIN_COSINE - cosine)).normalize_or(wo) }

@@ -165,7 +165,7 @@ mod tests {
                 assert!((direction.length() - 1.0).abs() < 1e-5);
                 disagreed += usize::from((sampler.pdf(direction) / pdf - 1.0).abs() > 1e-4);
             }
-            // Only directions within rounding of a pixel's border may disagree.
+            // The two pdfs may differ only for directions within rounding of a pixel's border.
             assert!(disagreed < 20, "{disagreed}");
         }
     }

@@ -32,9 +32,9 @@ impl Lobe {
         Self { wo, alpha, masking: 1.0 + lambda(wo, alpha) }
     }
 
-    /// Returns the BRDF times the cosine of `wi`, without the Fresnel factor, and the solid-angle pdf of `wi` if the
-    /// direction is sampled by reflection about [`Lobe::sample_normal`]. `wi` must lie above the surface; `h` is the
-    /// half vector.
+    /// Returns the BRDF times the cosine of `wi`, without the Fresnel factor, and the solid-angle pdf of `wi`. The pdf
+    /// holds for a `wi` that is sampled by reflecting `wo` about the normal from [`Lobe::sample_normal`]. `wi` must lie
+    /// above the surface; `h` is the half vector.
     pub fn eval(&self, wi: Vec3, h: Vec3) -> (f32, f32) {
         // Evaluate D(h) / (4 cos θo), the common factor of the BRDF and the pdf, with the distribution D of microfacet
         // normals. In the pdf, `wo` · `h` cancels against the Jacobian of reflection.

@@ -88,8 +88,8 @@ impl Rating {
 /// Smallest and largest solid angle, in steradians, for which CIE 117 is valid. [convention]
 const MIN_SOLID_ANGLE: f64 = 3e-4;
 const MAX_SOLID_ANGLE: f64 = 0.1;
-/// Smallest horizontal length of the normalised line of sight. Steeper lines of sight are refused, because the
-/// position index needs to know which way is up in the field of view. [convention]
+/// Smallest length of the horizontal component of the unit line of sight. Steeper lines of sight are refused, because
+/// the position index needs to know which way is up in the field of view. [convention]
 const MIN_HORIZONTAL: f64 = 0.02;
 /// An opening counts as seen edge-on if its projected area towards the eye is at most this multiple of its largest
 /// projected area along one of its own axes. [rounding]
@@ -143,7 +143,7 @@ struct Lamp {
     frame: [DVec3; 3],
     opening: Opening,
     distribution: usize,
-    /// Luminance of the light's colour, by which the intensity distribution is multiplied.
+    /// Luminance of the light's RGB colour (without unit), by which the intensity distribution is multiplied.
     factor: f64,
 }
 
@@ -176,8 +176,8 @@ impl Lamp {
         (area > largest * EDGE_ON).then_some(ApparentLamp { towards, distance, area, candela })
     }
 
-    /// Returns which share of the opening's projected area is visible, and the mean squared transmittance over the
-    /// visible part. The transmittance is squared because the rating sums L² ω.
+    /// Returns which share of the opening's projected area is visible, and the mean, over the visible part, of the
+    /// squared transmittance of the panes in front of it. The transmittance is squared because the rating sums L² ω.
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);

@@ -42,8 +42,8 @@ pub enum CalculationPoints {
     /// `normal`, which need not be perpendicular to the edges.
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
     /// The surface of a mesh, mapped to the result by the mesh's first set of texture coordinates; `(0, 0)` is the
-    /// outer corner of the first texel. `front` selects the side of the surface from which the triangles wind
-    /// counter-clockwise.
+    /// outer corner of the first texel. If `front` is true, light counts on the side from which the triangles wind
+    /// counter-clockwise, otherwise on the opposite side.
     Mesh { mesh: usize, front: bool },
 }
 
@@ -74,11 +74,11 @@ const BATCHES: u32 = 16;
 /// `MAX_LEARNING_POINTS` of its points. [convention]
 const MAX_LEARNING_POINTS: usize = 1024;
 const LEARNING_PATHS: u32 = 4;
-/// A calculation learns only if it traces at least this many times as many paths as are needed for learning.
+/// A calculation skips the learning if it traces fewer than this many times the paths that the learning would trace.
 /// [convention]
 const MIN_RATIO: usize = 50;
-/// Combined (by XOR) with the seed for the paths from which a calculation learns, so that these paths and the paths of
-/// the calculation itself use different random numbers.
+/// A calculation learns from paths whose seeds are derived from its own seed XOR `SALT`. These paths and the paths of
+/// the calculation itself then use different random numbers.
 const SALT: u64 = 0x6c65_6172_6e69_6e67;
 
 /// Computes the illuminance at the points of `place`. Call it on the library's own thread pool.
@@ -160,8 +160,9 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
 
 /// The calculation points, in the form from which [`Receivers::at`] makes the vertices of paths.
 enum Receivers {
-    /// A grid in world coordinates, in which neighbouring points remain distinct even if the scene is far from the
-    /// origin. `across` and `down` are the steps between neighbouring points.
+    /// A grid in world coordinates. Their origin suits the scene (`facet::centre`), so neighbouring points remain
+    /// distinct in f32 even if the scene's own coordinates are large. `across` and `down` are the steps between
+    /// neighbouring points.
     Grid {
         origin: Vec3,
         across: Vec3,
@@ -214,8 +215,8 @@ fn receivers(world: &World, place: &CalculationPoints, params: &Params) -> Resul
     }
 }
 
-/// Finds for each texel the triangle that covers the texel's centre, and the barycentric coordinates of the centre.
-/// Where triangles overlap, the first one is used.
+/// Finds for each texel the triangle that covers the texel's centre, and the barycentric coordinates of the centre;
+/// `None` if no triangle does. If several triangles cover it, the one with the smallest index is used.
 fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32, Vec2)>>> {
     let meshes = &world.scene().meshes;
     let found = meshes

@@ -21,9 +21,9 @@ use std::sync::Arc;
 /// Distance in metres by which flat faces are moved outwards, so that a face in the plane of a ceiling lies in front of
 /// the ceiling. [convention]
 const GAP: f64 = 2e-4;
-/// The distance by which flat faces are moved outwards is the larger of [`GAP`] and this multiple of a ray's offset:
-/// the distance by which a ray starts off a surface at the largest coordinate of the scene. Rounding then cannot close
-/// the gap. [rounding]
+/// Rays start at a distance off their surface, so that rounding does not make them hit it again. Let d be this distance
+/// at the largest coordinate of the scene, which counts as at most `facet::MAX_FREE_COORDINATE`. Flat faces are moved
+/// outwards by [`GAP`], or by this multiple of d if it is larger. Rounding then cannot close the gap. [rounding]
 const GAP_OFFSETS: f64 = 8.0;
 /// The luminance is intensity / projected area. In this quotient, the area counts as at least this share of the
 /// opening's largest projected area along an axis of the luminaire. Otherwise a flat opening would have infinite
@@ -234,8 +234,8 @@ impl Shape {
             .iter()
             .map(|patch| patch.is_luminous.then(|| IntensityBound::new(&faces, patch, &samples, [low, high])))
             .collect();
-        // A patch may seem dark only because the grid of directions misses its light. Give such a patch a share of the
-        // samples too.
+        // A patch may seem dark only because the grid of directions misses its light. Raise the bound of such a patch,
+        // so that light sampling selects the patch too.
         let brightest = intensity_bounds.iter().flatten().map(IntensityBound::peak).fold(0.0, f64::max);
         intensity_bounds.iter_mut().flatten().for_each(|bound| bound.raise(brightest * MIN_SHARE));
         Self { faces, intensity_bounds, flux: luminaire.flux() }

@@ -122,8 +122,9 @@ pub fn irradiance_in_air<S: PathSink>(
     }
 }
 
-/// Renders the view of a camera. Calls `publish` with the film after the first pass, and again whenever enough time
-/// has passed that publishing takes only a small share of it. Call it on the library's own thread pool.
+/// Renders the view of a camera. Calls `publish` with the film after the first pass, at the end and on cancellation.
+/// In between, calls it after a pass if at least ten times the duration of the last publication has passed. Call `run`
+/// on the library's own thread pool.
 ///
 /// Without an error target, the estimate of each pixel is unbiased. With a target, earlier paths decide which pixels
 /// get further paths; pixels with rare bright paths then come out too dark by a small part of their standard error

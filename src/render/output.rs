@@ -32,7 +32,8 @@ pub struct Film {
     /// How many lamps do not reach the surfaces in view. The render samples such lamps less often. `None` if there are
     /// too few of them to gain time that way, or if the render did not count them.
     pub lamp_visibility: Option<LampVisibility>,
-    /// What the render leaves out, in words: [`super::Requirements::left_out`] and [`LampVisibility::sentence`].
+    /// Sentences for the user: what the render leaves out ([`super::Requirements::left_out`]), and how it treats lamps
+    /// out of reach ([`LampVisibility::sentence`]).
     pub requirements: Vec<String>,
     /// The additional images: first the light path expressions, then the surface attributes, in the order of the
     /// request.

@@ -107,8 +107,8 @@ fn known_light_is_recovered_from_a_clipped_photo() {
     let off = |s: &relight::Solution| (s.scale - 1.0).abs().max_element();
     assert!(off(&recovered) < 0.02 && off(&as_it_is) > 3.0 * off(&recovered), "{recovered:?} {as_it_is:?}");
 
-    // Expose the photo so that red is clipped everywhere. If the target for red is a lower bound, the lamp must keep
-    // its colour; if it is exact, the lamp must lose red.
+    // Expose the photo so that red is clipped everywhere. With a lower bound as target for red, the lamp must keep its
+    // colour; with an exact target, the lamp must lose red.
     let white = 0.9 * of_channel(0).fold(f32::INFINITY, f32::min);
     let colour = (mean(&film.beauty) / white).with_x(1.0);
     let least = solve(colour, white, [Constraint::AtLeast, Constraint::Exactly, Constraint::Exactly]);

@@ -5,7 +5,7 @@ use crate::exec::Pool;
 use crate::job::Monitor;
 use std::f64::consts::PI;
 
-/// An importance map with its maximum in the centre and a smooth decay to the sides, largest in red.
+/// An importance map, largest in the centre and smoothly decaying to 0 at the sides. Red has the largest values.
 fn map() -> Importance {
     let cell = |i: usize, n: usize| (PI * ((i as f64 + 0.5) / n as f64 - 0.5)).cos();
     let (width, height) = (40, 32);
@@ -75,7 +75,8 @@ fn a_lamp_moves_to_the_largest_or_smallest_importance() {
     }
 }
 
-/// With fixed and with free scale and rotation, a reachable target is met, and the response equals that of `respond`.
+/// A reachable target is met, whether scale and rotation are fixed or free. `respond` gives the same response for the
+/// pose that was found.
 #[test]
 fn a_target_is_met_by_moving_the_lamp() {
     let texture = lamp(10, 40);
@@ -98,7 +99,7 @@ fn a_target_is_met_by_moving_the_lamp() {
         let again = map().respond(&texture, &matrix, Monitor::default().job()).unwrap();
         assert_eq!(again.light, found.response.light);
     }
-    // Bounds hold: the lamp must not move.
+    // If the bounds allow only the identity pose, the lamp must not move.
     let held = PlacementParams { min: Pose::IDENTITY, max: Pose::IDENTITY, ..PlacementParams::default() };
     assert_eq!(place(&texture, &held).pose, Pose::IDENTITY);
 }

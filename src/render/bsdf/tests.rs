@@ -6,7 +6,7 @@ use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
 use std::f32::consts::TAU;
 
-/// Parameters for three roughnesses, each as a dielectric, a blend and a metal. The last entry is purely diffuse.
+/// Parameters for three roughnesses, each with a metallic share of 0, 0.4 and 1. The last entry is purely diffuse.
 fn all_bsdf_params() -> Vec<BsdfParams> {
     let colour = Vec3::new(0.9, 0.5, 0.2);
     let mut all = Vec::new();

@@ -1,12 +1,14 @@
-//! The choice between the unfiltered picture and the passes of the filter, pixel by pixel, by their estimated errors.
+//! The choice, at each pixel, of the candidate with the least estimated error. The candidates are the unfiltered
+//! picture and the result of each pass of the filter.
 //!
 //! Let A and B be the values of the two halves at a pixel before filtering, and a and b the values after it.
 //!
 //! - The filter changes each half by its bias plus noise. The noise of the halves is independent, so the expectation of
 //!   (a - A)(b - B) is the squared bias.
-//! - (a - b)² / 4 is an estimate of the variance of the filtered picture (a + b) / 2.
-//! - The sum of both, averaged over neighbouring pixels, estimates the squared error of a candidate. It accounts for
-//!   correlations between pixels. For the unfiltered picture, it is the variance alone.
+//! - (a - b)² / 4 is an estimate of the variance of the filtered picture (a + b) / 2. It includes correlations between
+//!   pixels.
+//! - The sum of both, averaged over neighbouring pixels, estimates the squared error of a pass. The squared error of
+//!   the unfiltered picture is its variance alone.
 //!
 //! Rousselle et al. 2012 use two halves too. Stein's unbiased risk estimate, as used by Li et al. 2012, would need the
 //! covariance of all pixels.
@@ -20,12 +22,12 @@ use super::planes::{Classes, Planes};
 use crate::error::Result;
 use crate::job::Job;
 
-/// Radius in pixels of the neighbourhood over which estimated errors are averaged, and over which choices are
-/// smoothed. [bench filter]
+/// Radius in pixels of the neighbourhood over which estimated errors are averaged (`ERROR_RADIUS`), and over which the
+/// choices of pixels are smoothed (`CHOICE_RADIUS`). [bench filter]
 const ERROR_RADIUS: usize = 16;
 const CHOICE_RADIUS: usize = 4;
-/// Squared errors are divided by r² + m², where r is the radiance around the pixel and m this share of the picture's
-/// mean. So errors are relative to the radiance, except in dark pixels. [bench filter]
+/// Squared errors are divided by r² + m², where r is the mean radiance around the pixel and m is `MIN_LIGHT` times the
+/// mean of the picture. So errors are relative to the radiance, except in dark pixels. [bench filter]
 const MIN_LIGHT: f32 = 0.1;
 
 /// Returns both halves of the filtered light. The candidates are the unfiltered light and the result of each pass;
@@ -47,7 +49,7 @@ pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> 
     let choices = Planes::from_rows([width, height, passes.len() + 1], job.part(0.6, 0.7), |y, row| {
         for x in 0..width {
             let best = (0..=passes.len()).min_by(|&i, &j| errors.row(y, i)[x].total_cmp(&errors.row(y, j)[x]));
-            // Where the variance is unknown, take the last pass.
+            // Where the variance is unknown, no error can be estimated: take the last pass.
             let choice = if light.is_known(x, y) { best.unwrap_or(0) } else { passes.len() };
             row[choice * width + x] = 1.0;
         }

@@ -1,5 +1,5 @@
-//! Guide images (albedo, normal, position), and the distance between two pixels in them: a measure of how much their
-//! surfaces differ.
+//! Guide images (albedo, normal, position). The distance between the guides of two pixels measures how much the
+//! surfaces at these pixels differ.
 
 use super::input::Input;
 use super::planes::{NEIGHBOURS, Planes, Shift};
@@ -40,8 +40,8 @@ impl Guides {
         let job = job.part(0.5, 1.0);
         let scales = Planes::from_rows_with([width, height, 1], job, new_scratch, |(nearest, distance), y, row| {
             scales(&planes, y, nearest, distance, row);
-            // Where the variance is unknown, no statistical test can separate the surfaces at an edge. Only the guides
-            // can, so a factor of 1 leaves their distances as they are.
+            // Where the variance is unknown, the statistical test cannot separate the surfaces at an edge; only the
+            // guides can. Leave their distances unchanged there, with a factor of 1.
             (0..width).filter(|&x| !input.is_known(x, y)).for_each(|x| row[x] = 1.0);
         })?;
         for y in 0..height {

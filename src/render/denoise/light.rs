@@ -96,7 +96,7 @@ fn unit(input: &Input) -> f32 {
 }
 
 /// Computes the confidence in the halves of the pixels from their variances. A half's confidence does not depend on the
-/// other half, which keeps the filtered halves independent.
+/// other half, so it does not make the filtered halves depend on each other.
 fn confidence(input: &Input, albedo: &Planes, unit: f32, job: Job) -> Result<Planes> {
     let (width, height) = (albedo.width, albedo.height);
     let noise = Planes::from_rows([width, height, 2], job.part(0.0, 0.2), |y, row| {

@@ -1,9 +1,9 @@
 //! The limit of the filter's changes: no half of a pixel moves by more than two standard errors of this half.
 //!
-//! The choice between the passes rests on errors that are averaged over a neighbourhood. On average, the chosen pass
-//! is better than the unfiltered picture, but a single pixel can differ from the pixels around. For example, the
-//! outline of a lamp is a row of pixels that are alike, so it does not count as an edge, and a pass that suits the
-//! wall beside it blurs it. The limit bounds the harm: the filtered value cannot contradict the paths of the pixel
+//! The choice between the passes rests on errors that are averaged over a neighbourhood. On average, the chosen pass is
+//! better than the unfiltered picture, but a single pixel can differ from the pixels around. For example, the outline
+//! of a lamp is a row of pixels that are alike, so it does not count as an edge. A pass that suits the wall beside the
+//! lamp then blurs the outline. The limit bounds this harm: the filtered value cannot contradict the paths of the pixel
 //! itself (a limited translation estimator, after Efron and Morris 1972, "Limiting the risk of Bayes and empirical
 //! Bayes estimators").
 
@@ -14,8 +14,9 @@ use crate::job::Job;
 
 /// Largest change of a half, in standard errors. [bench filter]
 const LIMIT: f32 = 2.0;
-/// Radius in pixels of the neighbourhood whose mean variance counts if it is larger than the pixel's own, because the
-/// own variance is too small in a pixel that has not found the light that its neighbours have found. [bench filter]
+/// Radius in pixels of the neighbourhood over which variances are averaged. The limit follows from this average or from
+/// the pixel's own variance, whichever is larger. A pixel that has missed the light of its neighbours has too small a
+/// variance of its own. [bench filter]
 const RADIUS: usize = 1;
 
 /// Returns the largest change of each half, per channel, in units of the picture; infinite where a variance is
@@ -35,9 +36,10 @@ pub fn limits(input: &Input, job: Job) -> Result<Planes> {
     Ok(limits)
 }
 
-/// Estimates the variance of a half from the difference between the halves and the variances that the halves state.
-/// Each half is the mean of two replications, whose spread gives its variance v or w (`film::pixel`). The squares of
-/// all four replications around their common mean add up to `2 v + 2 w + difference²`, with three degrees of freedom.
+/// Estimates the variance of a half from the difference between the halves and the halves' own variance estimates `v`
+/// and `w`. Each half is the mean of two replications, whose spread gives `v` or `w` (`film::pixel`). The squared
+/// deviations of all four replications from their common mean add up to `2 v + 2 w + difference²`. They have three
+/// degrees of freedom, so a third of the sum is the variance of a replication. The variance of a half is half of that.
 fn variance_of_half(difference: f32, v: f32, w: f32) -> f32 {
     (2.0 * v + 2.0 * w + difference * difference) / 6.0
 }

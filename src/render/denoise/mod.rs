@@ -69,7 +69,8 @@ pub struct Output {
     /// mean of the image. Infinite if a variance is unknown.
     pub error: f64,
     /// Estimated bias, relative to the mean of the image: the root mean square, over squares of 8 × 8 pixels, of the
-    /// mean bias in a square. The square of this estimate is unbiased. Blur within a square of pixels goes undetected.
+    /// mean bias in a square. The mean square is estimated without bias, but counts as 0 if it is negative. Blur within
+    /// a square of pixels goes undetected.
     pub bias: f64,
 }
 
@@ -158,8 +159,8 @@ struct Change<'a> {
 }
 
 impl Change<'_> {
-    /// Returns a half of the picture, filtered: the change of the light, times albedo and unit, is added to the
-    /// unfiltered half. A pixel whose light is unchanged therefore keeps its exact value.
+    /// Returns a half of the picture, filtered: the change of the light, times albedo and unit and clamped to the
+    /// limit, is added to the unfiltered half. A pixel whose light is unchanged therefore keeps its exact value.
     fn of(&self, half: &Image, number: usize, job: Job) -> Result<Image> {
         let Self { light, chosen, limits } = *self;
         let width = half.width;

@@ -76,8 +76,8 @@ impl Scratch {
 }
 
 impl Pass<'_> {
-    /// Filters both halves. The test of a half compares values of its own pilot only, so that the noise of the halves
-    /// stays independent, except for their common, smoothed variance.
+    /// Filters both halves. Each half is tested with its own half of the pilot, so its noise stays independent of the
+    /// noise of the other half. Only the smoothed variance of the pilot is common to both tests.
     pub fn run(&self, job: Job) -> Result<Planes> {
         let Planes { width, height, .. } = *self.light;
         Planes::from_rows_with(

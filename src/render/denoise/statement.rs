@@ -1,18 +1,18 @@
 //! What the filter states about its result: the bias, the error, and the interval of each pixel.
 //!
 //! All three are computed from the two halves before and after filtering; `choice` explains the formulas. The formulas
-//! hold for halves that are independent of each other. The filtered halves depend on each other, so that the formulas
-//! alone state too small an error:
+//! hold for halves that are independent of each other. But the filtered halves depend on each other, so the formulas
+//! alone state too small an error. The dependence has four causes; the first has the largest effect:
 //!
 //! - Both halves are filtered by the same guides, which come from the paths of both. At edges and in textures, the
-//!   noise of the guides follows the noise of the halves. This is the largest part.
+//!   noise of the guides follows the noise of the halves.
 //! - Both halves are tested by the same variance, which comes from their difference.
 //! - Both halves take the same pass, whose estimated error is the least of several noisy ones.
 //! - Light that comes by rare paths is usually missing from both halves.
 //!
-//! The filtered halves then agree more than independent halves would. Measured against references, the missing error
-//! is a share of the variance that the filter removes, and this share depends little on the scene and the number of
-//! paths (docs/notes/filter.md). The statement therefore adds this share ([`SHARED`]) to the variance.
+//! The filtered halves then agree more than independent halves would. Measured against references, the missing error is
+//! a share of the variance that the filter removes, and this share depends little on the scene and the number of paths
+//! (docs/notes/filter.md). The statement therefore adds this share ([`SHARED`]) to the variance.
 
 use super::light::Light;
 use super::planes::{Classes, Planes};
@@ -25,10 +25,11 @@ use crate::job::Job;
 const NORMAL_95: f32 = 1.959_964;
 /// Side of the squares over which the bias is averaged, in pixels. [convention]
 const SQUARE: usize = 8;
-/// Radius in pixels over which the errors of the pixels are averaged for their intervals. [bench filter]
+/// Radius in pixels of the neighbourhood over which squared errors are averaged to compute a pixel's interval.
+/// [bench filter]
 const INTERVAL_RADIUS: usize = 8;
-/// Share of the removed variance that remains as an error which the halves have in common: for pixels within surfaces,
-/// and for edges of surfaces. [bench filter]
+/// Error common to both halves, as a share of the variance that the filter removes: for pixels within surfaces, and for
+/// pixels at edges of surfaces. [bench filter]
 const SHARED: [f32; 2] = [0.045, 0.3];
 
 /// The statements of the filter about its result; `Output` describes the fields.
@@ -80,9 +81,9 @@ fn squared_error(errors: &Planes) -> f64 {
     bias.max(0.0) + variance
 }
 
-/// Returns six channels: estimates of the squared bias of each pixel (R, G, B), then of the variance of the mean of
-/// the two filtered halves, with the error that they have in common (R, G, B). They are accurate only as means over
-/// many pixels.
+/// Returns six channels: estimates of the squared bias of each pixel (R, G, B), then of the variance of the mean of the
+/// two filtered halves plus the error common to both ([`SHARED`]; R, G, B). The estimates are accurate only as means
+/// over many pixels.
 fn squared_errors(classes: &Classes, before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Planes> {
     let Image { width, height, .. } = *before[0];
     Planes::from_rows([width, height, 6], job, |y, row| {

@@ -5,8 +5,8 @@
 //! piece, points are sampled in proportion to the emission of their texel; the area pdf is the emission at the point
 //! divided by the intensity of the piece. So thousands of small lamps in one texture cost as much as one lamp, and no
 //! sample falls on a dark texel. Emission textures are looked up without interpolation, because interpolated light
-//! would spread to dark texels. A triangle whose texture coordinates have no area or span too many texels is one piece
-//! and is sampled uniformly.
+//! would spread to dark texels. A textured triangle is one piece and is sampled uniformly if its texture coordinates
+//! have no area, lie within a single texel, span too many texels, or lie too far from 0.
 //!
 //! The faces of luminaires ([`super::luminaires`]) are emitters, too. A patch of a face is one piece. Each triangle of
 //! the patch is selected with the same probability, and points on it are sampled uniformly. The emission of faces
@@ -42,7 +42,8 @@ pub struct Emitters {
     tilings: Vec<Tiling>,
     /// For each tile of each tiling, the index of the tile's piece; `NONE` for dark tiles.
     piece_of_tile: Vec<u32>,
-    /// All pieces. Piece indices count the undivided triangles (`uniform`) first, then the emissive tiles.
+    /// The undivided triangles (`uniform`) and the emissive tiles. Piece indices count the triangles first, then the
+    /// tiles.
     uniform: Vec<UniformTriangle>,
     tiles: Vec<Tile>,
     /// The patches of luminaires' faces. Their piece indices follow the indices of the tiles.

@@ -96,7 +96,8 @@ impl Polygon {
     }
 
     /// Samples a point uniformly by area: `u` selects a triangle of the polygon's fan. The remainder of `u`, rescaled
-    /// to `[0, 1]`, and `v` select the point in this triangle.
+    /// to `[0, 1]`, and `v` select the point in this triangle. Returns `None` if the polygon has fewer than three
+    /// corners.
     pub fn sample(&self, (u, v): (f64, f32)) -> Option<DVec2> {
         let mut target = u * 2.0 * self.area();
         let last = self.len.checked_sub(2).filter(|&l| l > 0)?;

@@ -196,7 +196,8 @@ impl Tiling {
         let (low, high) = (a.min(b).min(c).floor(), a.max(b).max(c).floor());
         let (width, height) = (texture.image.width, texture.image.height);
         let span = high - low + 1.0;
-        // If the triangle spans more texels than the texture has, average the whole texture.
+        // Average the whole texture if the triangle spans more texels than the texture has, or lies too far from the
+        // origin of texture coordinates.
         let fits = span.x <= width as f64 && span.y <= height as f64 && low.abs().max_element() < MAX_TEXEL_COORDINATE;
         let (low, columns, rows) =
             if fits { (low, span.x as usize, span.y as usize) } else { (DVec2::ZERO, width, height) };

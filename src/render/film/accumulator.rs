@@ -107,9 +107,9 @@ impl<'a> Accumulator<'a> {
         &self.pixels[tile * AREA + i]
     }
 
-    /// Returns the pixel whose value the image shows at (`x`, `y`). If the pixel itself has no paths yet, this is a
-    /// pixel of a coarse pass, up and to the left: the low bits of both coordinates are cleared one by one until a
-    /// pixel has paths.
+    /// Returns the pixel whose value the image shows at (`x`, `y`): this pixel itself, if it has paths. Otherwise the
+    /// low bits of both coordinates are cleared one by one until a pixel has paths. This finds a pixel of a coarse
+    /// pass, up and to the left.
     pub(super) fn nearest(&self, x: usize, y: usize) -> (usize, usize) {
         let (mut x, mut y, mut mask) = (x, y, !0);
         while self.pixel(x, y).count() == 0 && (x, y) != (0, 0) {

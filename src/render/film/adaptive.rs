@@ -8,9 +8,9 @@
 //!    doubles the paths of the tiles with the largest ratio of required to present paths.
 //!
 //! If the target limits the error of the whole image, the required number of paths of a tile is proportional to the
-//! standard deviation of its paths (Neyman 1934). For a target on the relative error, this deviation is divided by the
-//! radiance of the pixel. If the target limits the error of each pixel, the required number follows from the errors of
-//! the tile's own pixels.
+//! standard deviation of its paths (Neyman 1934). For a target on the relative error, each pixel's deviation is first
+//! divided by the pixel's radiance. If the target limits the error of each pixel, the required number follows from the
+//! errors of the tile's own pixels.
 //!
 //! A tile in which no bright path has been found yet has a small variance by chance. If the sampling of such a tile
 //! stopped early, the image would become too dark. Decisions are therefore made for whole tiles and take neighbouring
@@ -31,8 +31,9 @@ use crate::render::params::Params;
 /// Paths per pixel, in all, after the first pass that follows the coarse image.
 /// [convention: one path per replication (point sequence) of a pixel]
 const FIRST_PASS_PATHS: u32 = 4;
-/// Paths per pixel, in all, before the first adaptive pass. The bench prints the saving and the bias of an error
-/// target; the bias is larger if passes adapt to fewer paths. [bench error_control]
+/// Paths per pixel, in all, before the first adaptive pass. With fewer paths, the allocation to tiles follows the noise
+/// more closely, which increases the bias. The bench prints this bias, and the paths that an error target saves.
+/// [bench error_control]
 pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Limit on the paths per pixel of a tile, as a multiple of `samples`. Without a limit, light that few paths find (a
 /// caustic, or the glossy reflection of a small lamp) would take all paths. At the limit, the error of a tile is 1/8 of
@@ -124,7 +125,8 @@ impl<'p> AdaptiveSampler<'p> {
                 break;
             }
             let (present, pixels) = (statistics[tile].max_paths, f64::from(statistics[tile].pixels));
-            // If too few paths are left to double those of the tile, use the paths that are left.
+            // Double the tile's paths, but do not exceed `max_paths` per pixel or the paths that are left for the
+            // image.
             let left = ((allowed - spent).max(0.0) / pixels) as u32 / REPLICATIONS * REPLICATIONS;
             let more = present.min(max_paths - present).min(left);
             counts[tile] = present + more;
@@ -158,8 +160,10 @@ impl<'p> AdaptiveSampler<'p> {
         Ok(target_paths)
     }
 
-    /// Raises each tile's entry in `target_paths` to the tile's number in the allocation that meets `target`, an error
-    /// of the whole image, with the fewest paths. The allocation has on average at most `samples` paths per pixel.
+    /// Raises each tile's entry in `target_paths` to at least the number of paths that an allocation gives to the tile.
+    /// This allocation meets `target`, an error of the whole image, with the fewest paths. If it would take more than
+    /// `samples` paths per pixel on average, it is scaled down to `samples`. Does nothing if the image meets `target`
+    /// already.
     fn add_allocation(
         &self,
         accumulator: &Accumulator,
@@ -175,9 +179,9 @@ impl<'p> AdaptiveSampler<'p> {
         let deviations: Vec<f64> =
             accumulator.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
         // Give each tile n = k d paths per pixel. Here d is the standard deviation of the tile's paths, raised where
-        // the neighbouring tiles vary more, and k is the same for all tiles. If s is the variance of a single path,
-        // the mean square error of the image is mean(s / (k d)). Find the k that meets the target, or the k that
-        // spends `samples` paths per pixel if that is smaller.
+        // the neighbouring tiles vary more, and k is the same for all tiles. If s is the variance of a tile's single
+        // path, the mean square error of the image is mean(s / (k d)). Take the smaller of two values of k: the one
+        // that meets the target, and the one that spends `samples` paths per pixel.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
                 / f64::from(whole.pixels)

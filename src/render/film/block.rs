@@ -1,9 +1,9 @@
 //! Blocks of pixels whose paths share secondary vertices (see `shared`).
 //!
 //! A replication is one of the four point sequences of a pixel. A block covers 4 × 2 pixels of a tile, or 2 × 4 pixels
-//! in every second replication. The errors of the pixels of a block are correlated. Since the shape of the blocks
-//! alternates, the correlation does not show in the image. The division into blocks depends only on the replication and
-//! the position in the image.
+//! in every second replication. The errors of the pixels of a block are correlated. A pixel shares its 4 × 2 block and
+//! its 2 × 4 block with partly different neighbours, so the mean over the replications shows no pattern of blocks. The
+//! division into blocks depends only on the replication and the position in the image.
 
 use super::camera_rays::CameraRays;
 use super::grid::{AREA, TILE};

@@ -195,9 +195,9 @@ fn render_tiles(
 /// pilot's three passes. The tiles' own times are times on one thread, so only their ratios are used.
 ///
 /// Expensive tiles may be selected more often than others, so the pilot's own time per path, `seconds / paths`, is
-/// biased. It is multiplied by the ratio of two means of the tiles' times per path. In the first mean, a tile counts
-/// with its pixels times the number of tiles that it represents. In the second mean, it counts with the number of paths
-/// that the pilot traced in it.
+/// biased. The result is `seconds / paths` times the ratio of two means of the tiles' times per path. In the first
+/// mean, the weight of a tile is its number of pixels times the number of tiles that it represents. In the second mean,
+/// the weight is the number of paths that the pilot traced in the tile.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
@@ -207,7 +207,8 @@ fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f6
     seconds / paths * bias
 }
 
-/// Selects pilot tiles with a probability that grows with the standard deviation of their light.
+/// Selects pilot tiles. The probability of a tile grows with the standard deviation of its light, or of the light of
+/// the 3 × 3 tiles around it if that is larger.
 fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<PilotTile>> {
     let variances = try_collect(expected.iter().map(|l| l.variance))?;
     let varies = grid.max_with_neighbourhood_mean(&variances)?;
@@ -251,8 +252,8 @@ impl SystematicSampler {
     }
 
     /// Returns the weight of the next item, whose chance is `chance`. The weight is the number of items that this item
-    /// represents, or 0 if it is not selected. An item whose chance exceeds the distance between marks may be selected
-    /// more than once.
+    /// represents, or 0 if it is not selected. An item that is longer than the distance between marks may contain
+    /// several marks; each adds to its weight.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
         let mut marks = 0.0;

@@ -1,4 +1,4 @@
-//! Prepass for renders in parts: traces a few paths over the whole scene, from which every part takes the same weights
+//! Prepass for renders in parts: traces a few paths over the whole image, from which every part takes the same weights
 //! for Russian roulette (see `roulette`).
 //!
 //! A render of the whole image takes these weights from its own earlier passes. The parts of a distributed render do

@@ -64,8 +64,8 @@ impl Bounds {
     /// Returns the bounds of all `parts` together; there must be at least one part.
     pub fn union(parts: &[Self]) -> Self {
         let mut whole = parts[0];
-        // Average the axes, weighted by intensity. The axis of a two-sided light may point either way, so it is
-        // flipped into the half-space of the other axes.
+        // Average the axes, weighted by intensity. A two-sided light may count with either sign of its axis; take the
+        // sign that agrees with the sum so far.
         let mut sum = Vec3::ZERO;
         whole.intensity = 0.0;
         for part in parts {
@@ -207,7 +207,7 @@ impl BoundsLanes {
             let turned = if cosine >= self.full_cosine[i] { 1.0 } else { turned };
             let emitted = turned + self.box_extent[i] * inverse;
             // Bound the cosine at the receiver. The component of `d` along the normal is largest at a corner of the
-            // box; it is divided by the distance of the centre.
+            // box. Divide this component by the distance from the receiver to the centre of the box.
             let reached = n.x * d[0] + n.y * d[1] + n.z * d[2];
             let widened = m.x * self.half[0][i] + m.y * self.half[1][i] + m.z * self.half[2][i];
             let received = (reached + widened) * inverse;

@@ -2,9 +2,10 @@
 //!
 //! In a building, walls hide most lamps from the surfaces in view, and light samples of hidden lamps are wasted: to
 //! render one room of a building of 225 rooms takes 30 times as many paths as to render that room alone. The first
-//! passes of a render therefore count, for each light, its samples and how many of them arrive, which means that
-//! nothing occludes them ([`super::survey`]). A light is *likely* if one of its samples has arrived, or if the
-//! estimated probability that its next sample arrives is at least [`MIN_ARRIVAL`]. Otherwise it is *unlikely*.
+//! passes of a render therefore count, for each light, how many samples are drawn and how many arrive
+//! ([`super::survey`]). A sample arrives if nothing occludes it. A light is *likely* if one of its samples has arrived,
+//! or if the estimated probability that its next sample arrives is at least [`MIN_ARRIVAL`]. Otherwise it is
+//! *unlikely*.
 //!
 //! Likely and unlikely lights have a selector each. The unlikely lights together get a small share of the light
 //! samples ([`unlikely_share`]), and the likely lights get the rest. Every light keeps a positive probability, so the

@@ -11,9 +11,9 @@ use crate::render::vicinity::PositionReservoir;
 use std::sync::Arc;
 
 /// Unlikely lights get a selector of their own only if at least this share of all light samples so far went to them.
-/// Below this share, the selector would save hardly any samples: it would still send 3 to 10 % of the samples to
-/// unlikely lights (`lamp_visibility::UNLIKELY_SHARES`). The render then keeps one selector for all lights, and its
-/// image equals, to the last bit, the image without learning. [bench buildings]
+/// Below this share, the selector would save hardly any samples, because unlikely lights would still get 3 to 10 %
+/// (`lamp_visibility::UNLIKELY_SHARES`). The render then keeps one selector for all lights, and its image equals, to
+/// the last bit, the image without learning. [bench buildings]
 const MIN_GAIN: f64 = 0.2;
 /// The first decision is made after max(`FIRST_DECISION`, number of lights / 2) light samples. [convention]
 const FIRST_DECISION: u64 = 256;
@@ -54,7 +54,8 @@ impl Lights {
         match &self.split {
             Some(split) if split.is_same(&weights) && counted > ENOUGH => return Ok(Some(lights)),
             Some(_) => {}
-            // Keep one selector for all lights. After `ENOUGH` samples, stop counting as well.
+            // Too few samples went to unlikely lights: keep one selector for all lights. After `ENOUGH` samples, stop
+            // counting as well.
             None if (unlikely as f64) < MIN_GAIN * counted as f64 => {
                 lights.survey = lights.survey.filter(|_| counted < ENOUGH);
                 return Ok(Some(lights));

@@ -88,7 +88,8 @@ pub enum LightEnd {
 
 impl Lights {
     /// Builds the distribution over all lights. `pieces` are the bounds of the pieces into which the emissive surfaces
-    /// are divided. Positions are relative to `centre`; `radius` is the radius of the scene in metres.
+    /// are divided. The positions of the punctual lights are made relative to `centre`, the origin of world
+    /// coordinates. `radius` is the radius of the scene in metres.
     pub fn build(scene: &Scene, emitters: Emitters, pieces: Vec<Bounds>, centre: DVec3, radius: f32) -> Result<Self> {
         let count = pieces.len();
         let mut bounds = pieces;

@@ -32,8 +32,8 @@ pub enum Shape {
 }
 
 /// The spot cone of glTF. Let c be the cosine of the angle to `axis`. The intensity is multiplied by x², where x is
-/// `(c - outer) * scale`, clamped to [0, 1]. `outer` is the cosine of the outer angle, and `scale` is the reciprocal of
-/// the cosine of the inner angle minus `outer`, at most 1e4.
+/// `(c - outer) * scale`, clamped to [0, 1]. Here `outer` is cos(outer angle), and `scale` is
+/// `1 / (cos(inner angle) - outer)`, at most 1e4.
 pub struct Cone {
     axis: Vec3,
     outer: f32,

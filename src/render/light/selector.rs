@@ -68,8 +68,8 @@ impl Inventory {
 pub struct Selector {
     /// Selects among the lights at a finite distance.
     pub tree: LightTree,
-    /// For each light of the tree, its number in the [`Inventory`]. Empty in the selector of all lights, in whose tree
-    /// each light has its number of the inventory.
+    /// For each light of the tree, its number in the [`Inventory`]. Empty in the selector of all lights: there, the
+    /// index of a light in the tree equals its number in the inventory.
     members: Vec<u32>,
     /// Selects among the directional lights. It has an entry for each punctual light of the scene; the entries of
     /// lights that are not directional have zero weight.

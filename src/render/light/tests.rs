@@ -74,7 +74,7 @@ fn sampled_lights_follow_the_pmf_of_the_tree() {
                     Some((light, pmf, rest)) => {
                         counts[light] += 1.0;
                         assert!((0.0..1.0).contains(&rest));
-                        // Compare loosely: the two pmfs multiply the same factors in opposite order.
+                        // Compare loosely: `sample` and `pmf` multiply the same factors in opposite order.
                         assert!((f64::from(pmf) / stated[light] - 1.0).abs() < 1e-5);
                     }
                 }
@@ -255,8 +255,8 @@ fn any_number_of_threads_builds_the_same_tree() {
 
 #[test]
 fn regular_patterns_of_lamps_make_the_same_tree_at_any_scale() {
-    // In a regular pattern, several splits have equal cost, and centres of lamps lie on borders of bins. The scale
-    // changes the rounding, but must not change the choice of the split or of the bins.
+    // In a regular pattern, several splits have equal cost, and centres of lamps lie on borders of bins. The scale of
+    // the scene changes the rounding of costs and centres, but must not change the choice of the split or of the bins.
     let receivers = receivers(4, Vec3::splat(2.0), &mut Rng::new(44, &[]));
     let pmfs = |scale: f32, side: usize| {
         let lamp = |i: usize| {
@@ -343,7 +343,8 @@ fn assert_close((mean, error): (f64, f64), expected: f64, slack: f64, what: &str
     assert!((mean - expected).abs() < 4.0 * error + slack * expected, "{what}: {mean} ± {error}, expected {expected}");
 }
 
-/// Returns the irradiance at the origin, facing up, from a polygon of radiance 1 above the horizon (Lambert 1760).
+/// Returns the irradiance of a surface at the origin that faces up, from a polygon of radiance 1 above the horizon
+/// (Lambert 1760).
 fn lambert(corners: &[Vec3]) -> f64 {
     let edge = |i: usize| {
         let a = corners[i].as_dvec3().normalize();
@@ -391,15 +392,16 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
 
 #[test]
 fn discs_and_spheres_light_by_their_form_factors() {
-    // A disc overhead, with a radius of half its height: E = π L r² / (r² + h²). The area of the polygon with 720
-    // corners is 1e-5 smaller.
+    // A disc of radius r = 1 m, at a height of h = 2 m above the floor: E = π L r² / (r² + h²). The area of the polygon
+    // with 720 corners is 1e-5 smaller.
     let rim = |i: usize| Vec3::new((TAU * i as f32 / 720.0).cos(), 2.0, (TAU * i as f32 / 720.0).sin());
     let mut disc = Mesh { material: 1, positions: (0..720).map(rim).collect(), ..Mesh::default() };
     disc.triangles = (1..719).map(|i| [0, i, i + 1]).collect();
     let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
     assert_close(measured, PI / 5.0, 5e-5, "disc");
 
-    // A sphere overhead: E = π L r² / d². Its facets lie within the sphere and make the irradiance up to 1 % smaller.
+    // A sphere of radius r = 1 m, with its centre d = 3 m above the floor: E = π L r² / d². The facets lie within the
+    // sphere and make the irradiance up to 1 % smaller.
     let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
     let at = |i: usize, j: usize| {
         let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);
@@ -537,7 +539,7 @@ fn a_sample_states_the_density_that_scattering_into_it_would() {
         disagreed += usize::from((stated / sample.pdf - 1.0).abs() > 1e-4);
     }
     // Rounding may place a sampled point in a neighbour of the tile from which the point was drawn. Only at such points
-    // may the two pdfs disagree.
+    // may the pdf of the sample differ from the result of `surface_pdf`.
     assert!(surfaces > 5000 && disagreed <= 5, "{disagreed} of {surfaces}");
 }
 

@@ -18,9 +18,9 @@ const BINS: usize = 12;
 /// the tree. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
 /// Costs that differ by less than this share count as equal. Of splits of equal cost, the last one is chosen (in the
-/// order of axes and borders); of parts of equal cost, the first one is divided. Regular patterns of lamps often have
-/// equal costs, which differ only by rounding when computed. Rounding must not decide, so that a scaled scene gets the
-/// same tree, and thus the same image. [rounding]
+/// order of axes and borders). When the children of a node are formed, the first one of several parts of equal cost is
+/// divided. Regular patterns of lamps often have equal costs, which differ only by rounding when computed. Rounding
+/// must not decide, so that a scaled scene gets the same tree, and thus the same image. [rounding]
 const TIE: f32 = 1e-4;
 /// Offset, in bins, that is added to a position. A light on the border of two bins then falls into the upper bin,
 /// whichever way its position is rounded. [rounding]
@@ -140,7 +140,8 @@ impl LightTree {
         (index as u32, Bounds::union(&bounds))
     }
 
-    /// Returns the number of clusters. A cluster has a lower index than the clusters within it.
+    /// Returns the number of clusters; a tree without nodes counts as one cluster. A cluster has a lower index than the
+    /// clusters within it.
     pub fn clusters(&self) -> usize {
         self.nodes.len().max(usize::from(!self.fixed.is_empty()))
     }

@@ -102,8 +102,8 @@ impl EventSet {
 }
 
 impl Node {
-    /// Calls `see` with every label of the tree and a flag: true if the pattern asks for the label, false if it
-    /// excludes it.
+    /// Calls `see` with every label of the tree and a flag: true if a pattern asks for the label, false if a pattern
+    /// excludes the label.
     pub fn labels(&self, see: &mut impl FnMut(&str, bool)) {
         match self {
             Node::Event(set) => {

@@ -294,7 +294,8 @@ fn replay_outcome(sums: &mut SparseSums, state: u16, importance: Vec3A, outcome:
     }
 }
 
-/// Returns the layer that scatters, if at most one layer has a non-zero value; `Diffuse` if both values are zero.
+/// Returns the layer that scatters: `Diffuse` if the glossy value is zero, `Glossy` if only the diffuse value is zero,
+/// and `None` if neither is.
 #[inline]
 fn only_layer(lobes: Lobes) -> Option<Scatter> {
     if lobes.glossy == Vec3::ZERO {
