@@ -343,8 +343,7 @@ fn assert_close((mean, error): (f64, f64), expected: f64, slack: f64, what: &str
     assert!((mean - expected).abs() < 4.0 * error + slack * expected, "{what}: {mean} ± {error}, expected {expected}");
 }
 
-/// Returns the irradiance of a surface at the origin that faces up, from a polygon of radiance 1 above the horizon
-/// (Lambert 1760).
+/// Irradiance of an upward surface at the origin by a polygon of radiance 1 above the horizon (Lambert 1760).
 fn lambert(corners: &[Vec3]) -> f64 {
     let edge = |i: usize| {
         let a = corners[i].as_dvec3().normalize();
@@ -400,8 +399,7 @@ fn discs_and_spheres_light_by_their_form_factors() {
     let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
     assert_close(measured, PI / 5.0, 5e-5, "disc");
 
-    // A sphere of radius r = 1 m, with its centre d = 3 m above the floor: E = π L r² / d². The facets lie within the
-    // sphere and make the irradiance up to 1 % smaller.
+    // A sphere, r = 1 m, d = 3 m above the floor: E = π L r² / d². Its facets, inside it, make E up to 1 % smaller.
     let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
     let at = |i: usize, j: usize| {
         let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);
