@@ -145,7 +145,14 @@ mod tests {
     /// edge makes it an ellipse.
     fn bloomed_disc(component: usize, pixel: f64) -> Member {
         let size = DVec2::new(DIAMETER + 2.0 * DISC_BLOOM, DIAMETER + 2.0 * DISC_BLOOM * pixel);
-        let outline = Design { shape: Shape::Ellipse, size, axis: DVec2::X }.outline(DVec2::new(100.0, 0.0));
+        oval(component, (size, 0.0), 1000.0, DMat2::from_diagonal(DVec2::new(1.0, pixel)))
+    }
+
+    /// An ellipse with the given sides and angle, shown by `weight` photo pixels, where `inverse_map` converts steps in
+    /// photo pixels to steps in unwarped pixels.
+    fn oval(component: usize, (size, angle): (DVec2, f64), weight: f64, inverse_map: DMat2) -> Member {
+        let centre = DVec2::new(100.0, 0.0);
+        let outline = Design { shape: Shape::Ellipse, size, axis: DVec2::from_angle(angle) }.outline(centre);
         let (area, centre, moments) = polygon_moments(&outline).unwrap();
         Member {
             component,
@@ -154,9 +161,9 @@ mod tests {
             area,
             centre,
             moments,
-            weight: 1000.0,
-            blur: DVec2::new(1.0, pixel),
-            inverse_map: DMat2::from_diagonal(DVec2::new(1.0, pixel)),
+            weight,
+            blur: DVec2::new(inverse_map.row(0).length(), inverse_map.row(1).length()),
+            inverse_map,
             is_clear: true,
         }
     }
@@ -192,22 +199,8 @@ mod tests {
 
     /// A lamp of the given sides at `angle`, at a place where unwarping stretches photo pixels towards `away`.
     fn long_lamp(component: usize, size: DVec2, angle: f64, away: f64) -> Member {
-        let axis = DVec2::from_angle(angle);
-        let outline = Design { shape: Shape::Ellipse, size, axis }.outline(DVec2::new(100.0 * angle, 0.0));
-        let (area, centre, moments) = polygon_moments(&outline).unwrap();
         let stretch = DMat2::from_angle(away) * DMat2::from_diagonal(DVec2::new(2.0, 1.0)) * DMat2::from_angle(-away);
-        Member {
-            component,
-            angle: rectangle_angle(&outline),
-            outline,
-            area,
-            centre,
-            moments,
-            weight: 300.0,
-            blur: DVec2::new(1.0, 2.0),
-            inverse_map: stretch,
-            is_clear: true,
-        }
+        oval(component, (size, angle), 300.0, stretch)
     }
 
     #[test]
