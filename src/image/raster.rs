@@ -245,7 +245,9 @@ mod tests {
     fn truncated_files_are_errors() {
         let lossy = riff(&[(b"VP8 ", LOSSY)]);
         for (name, _, file) in files().into_iter().chain([("lossy webp", 3, lossy)]) {
-            // Damage to the last frame, the trailer and the padding does not affect the first frame.
+            // Number of bytes without which decoding must fail. Files that are cut later may still be decoded: only the
+            // first frame of a GIF is read, padding is ignored, and a lossy WebP whose picture is cut is decoded in
+            // part.
             let needed = match name {
                 "gif" => file.len() / 2,
                 "lossy webp" => 30,

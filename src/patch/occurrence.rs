@@ -97,7 +97,7 @@ mod tests {
         assert!(occurrence.cost(pack(3, 2)).abs_diff(1000) <= 1);
         occurrence.replace(to, from);
         assert!(costs(&occurrence).iter().all(|c| c.abs_diff(1000) <= 1));
-        // For any weight, the sum of penalty and distance fits into a `u32`.
+        // Even for a huge weight, the penalty is at most 2^30.
         let heavy = Occurrence::new(&identity, &allowed, 3, 1e30).unwrap();
         assert!(heavy.cost(from) <= i32::MAX as u32 / 2 + 1);
         assert_eq!(Occurrence::new(&Field::new(3, 3).unwrap(), &allowed, 3, 1.0).unwrap().cost(from), 0);

@@ -84,9 +84,9 @@ fn timed<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
 }
 
 /// If a stage stops at a target error, the number of its paths is limited to this multiple of the expected number. The
-/// error is proportional to 1 / √n after n paths. So any value from 2 to 8 gives the same result if the error was
-/// predicted to within a factor of 1.4 = √2; `make bench ONLY=plan` prints how accurate the predictions are.
-/// [convention]
+/// error is proportional to 1 / √n after n paths. If the prediction of the error is within a factor of √2 of the truth,
+/// at most twice the expected number of paths is needed, so any limit of at least 2 gives the same result.
+/// `make bench ONLY=plan` prints the accuracy of the predictions. [convention]
 const MAX_COST: f64 = 4.0;
 /// A stage with a time budget may take at most this many times the expected time. The bench prints the share of stages
 /// whose time is within a quarter of the prediction. [bench plan]

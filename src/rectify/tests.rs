@@ -529,8 +529,8 @@ fn right_angles_are_measured_within_the_stated_error() {
             let view = view_of(&segments, &Params { focal, seed, ..Params::default() }).unwrap();
             for found in view.squareness {
                 let found = found.unwrap();
-                // The generated edges are perfectly straight: subtract the allowance for crooked edges. Half of the
-                // allowance of each of the two directions applies to the angle between them.
+                // The stated variance of an angle contains STRAIGHTNESS² for crooked edges: half of STRAIGHTNESS² for
+                // each of the two directions that form the angle. The generated edges are straight, so subtract it.
                 sum += found.angle * found.angle / (found.error * found.error - STRAIGHTNESS * STRAIGHTNESS);
                 count += 1.0;
             }

@@ -38,8 +38,10 @@ const WHITE: f32 = 1.001;
 /// [convention]
 const MOSTLY: f64 = 0.5;
 
-/// Computes the mean colour of the chosen part of the photo, whose plane and lights are given by masks. If the halos
-/// cover the whole plane, the pixels of the plane outside the lights are used, halos included.
+/// Computes the mean colour of the part of the photo that `which` chooses. `plane` and `lights` are masks of the photo.
+///
+/// [`TargetColour::Surface`] is the plane without the lights and their halos, which are the pixels closer to a light
+/// than `HALO` times the photo's longer side. If nothing else of the plane is left, the halos are included.
 pub fn photo_colour(
     which: TargetColour,
     photo: &Image,

@@ -152,7 +152,8 @@ pub struct Surfaces {
 }
 
 impl Surfaces {
-    /// Adds a primary hit at distance `depth` along the viewing direction, in metres.
+    /// Adds a primary hit. `depth` is its distance from the camera along the camera's forward direction, in metres;
+    /// `seen.distance` is that along the ray.
     pub fn add(&mut self, world: &World, seen: &PrimaryHit, depth: f32) {
         let material = world.mesh(seen.mesh).material;
         self.hits += 1;

@@ -15,7 +15,8 @@ use std::ops::Range;
 
 /// Maximum width of a bar, as a share of the longer side of the unwarped image. [bench photos:tune]
 const MAX_WIDTH: f64 = 0.05;
-/// Minimum depth of a bar ([`Bar`]). [bench photos:tune]
+/// A bar is detected only if its depth, a share of the luminance of the panes ([`Bar`]), is at least this value.
+/// [bench photos:tune]
 const MIN_DEPTH: f32 = 0.03;
 /// A bar is detected only if at least this share of the positions along it has light on both sides of the bar.
 /// [bench photos:tune]

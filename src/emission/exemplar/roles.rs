@@ -11,7 +11,8 @@ const MAX_CUT_RATIO: f64 = 1.35;
 /// [judged on 5 photos]
 const MAX_WHOLE_CONTACT: f64 = 0.6;
 /// A light runs through the exemplar if it spans at least this share of the row or of the column through its centre.
-/// Only the part of the row or column that the photo shows is counted. [rounding]
+/// Only the part of the row or column that the photo shows is counted. Less than 1 is asked for because masks fray at
+/// the border of the photo. [convention: 3 pixels in 100]
 const MIN_THROUGH_SPAN: f64 = 0.97;
 
 /// The role of a component of the exemplar.

@@ -12,8 +12,8 @@ use crate::job::Job;
 use glam::Vec4;
 
 /// A patch counts as equally good as the best one if its error is at most a e + b, where e is the lowest error. The
-/// first value is a: Efros and Freeman (2001) also allow 10 %. The second value is b; on a lattice, b is larger if
-/// `Comparison::slack` is larger. [paper: Efros and Freeman 2001]
+/// first value is a: Efros and Freeman (2001) also allow 10 %. The second value is the smallest b, which only allows
+/// for rounding. On a lattice, b is `Comparison::slack` if that is larger. [paper: Efros and Freeman 2001]
 const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 
 /// The lit share of a pixel, in `[0, 1]`, is multiplied by this and rounded, so that light can be summed in integers.

@@ -41,7 +41,7 @@ fn a_clipped_channel_follows_from_the_others() {
     assert!(off(mean(&photo)).x > 0.1);
     // A photo with values above white is not clipped, so its mean is exact.
     assert!((whole(&truth).colour - mean(&truth)).abs().max_element() < 1e-5);
-    // Red is white everywhere, so its target is a lower bound.
+    // The red channel has the clipping value 1 in every pixel, so its target is a lower bound.
     let bright = Image::from_fn(8, 8, |x, _| [1.0, 0.5 + 0.01 * x as f32, 0.3]).unwrap();
     let found = whole(&bright);
     assert_eq!(found.constraint, [Constraint::AtLeast, Constraint::Exactly, Constraint::Exactly]);

@@ -259,8 +259,9 @@ impl<'a> PathTracker<'a> {
         }
     }
 
-    /// Ends the path. Calls `take` with the index of each list of expressions and the light that the path adds to that
-    /// list.
+    /// Ends the path. Calls `take` with the index and the value of each sum of light to which the path contributes. The
+    /// sum of list `l`, for the initial state at position `s` of those given, has the index `s × lists + l`. A path
+    /// from the camera has one initial state, so its index is `l`.
     #[inline]
     pub fn end(&mut self, take: impl FnMut(usize, Vec3A)) {
         self.flush_rest();

@@ -23,7 +23,11 @@ pub struct Placed {
 /// other triangles. If the surface spans several meshes, the material is that of the mesh with the largest share of the
 /// surface's area.
 ///
-/// Errors: `InvalidArgument` for a surface of another scene, or for a negative or non-finite texture or strength.
+/// Errors: `InvalidArgument` if
+///
+/// - the surface belongs to another scene, or one of its sides is not positive;
+/// - the texture is empty, does not have 1, 3 or 4 channels, or holds a negative or non-finite value;
+/// - `strength` is negative or not finite.
 pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec3) -> Result<Placed> {
     check_triangles(scene, &surface.triangles)?;
     if !strength.is_finite() || strength.min_element() < 0.0 {
