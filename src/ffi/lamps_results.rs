@@ -117,7 +117,7 @@ pub struct luxfer_lamps_response {
     pub reserved: u32,
     /// Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel.
     pub mean: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of the field mean, in cd/m².
+    /// Half-widths of the 95 % confidence intervals of `mean`, per channel, in cd/m².
     pub half_width: [f64; 3],
 }
 

@@ -1,4 +1,5 @@
-//! The limit of the filter's changes: no half of a pixel moves by more than two standard errors of this half.
+//! The limit of the filter's changes. A pixel has two values, one from each half of its paths. The filter moves neither
+//! by more than two of its standard errors.
 //!
 //! The choice between the passes rests on errors that are averaged over a neighbourhood. On average, the chosen pass is
 //! better than the unfiltered picture, but a single pixel can differ from the pixels around. For example, the outline

@@ -13,7 +13,8 @@
 //!    two halves, which includes the correlation between pixels that share paths.
 //! 4. Each pixel takes the result of the pass with the least estimated error, or stays as it is (`choice`). If all
 //!    variances are 0, the image is unchanged.
-//! 5. No half of a pixel moves by more than two standard errors of this half (`limit`).
+//! 5. A pixel has two values, one from each half of its paths; neither moves by more than two of its standard errors
+//!    (`limit`).
 //! 6. The error, the bias and the interval of each pixel are estimated from the halves (`statement`).
 //!
 //! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, where they differ

@@ -42,7 +42,7 @@ pub struct Pass<'a> {
     /// The pilot: an estimate of the light with less noise, whose pixels are compared by the statistical test. `None`
     /// skips the test and the fit of slopes.
     pub pilot: Option<Pilot<'a>>,
-    /// Confidence in each half of each pixel, in `(0, 1]`.
+    /// Confidence in the light of each half of the paths, for each pixel, in `(0, 1]`.
     pub confidence: &'a Planes,
     pub guides: &'a Guides,
     /// Distance between neighbouring taps, in pixels.

@@ -57,8 +57,10 @@ pub fn is_outermost(tree: &Tree, is_chosen: &[bool], node: u32) -> bool {
 }
 
 /// Finds the disjoint nodes under a stroke with the largest sum of gains. The gain is the score by which the nodes
-/// compete: contour gradient × cover ^ `COVER_POWER` × purity ^ `PURITY_POWER` / (1 + (l / (`USUAL_EXTENT` × s))²),
-/// where l is the long axis of the node's ellipse ([`Regions::axes`]), and s the diagonal of the stroke's bounding box.
+/// compete: contour gradient × cover ^ `COVER_POWER` × purity ^ `PURITY_POWER` / (1 + (l / (`USUAL_EXTENT` × s))²).
+/// The cover is the share of the stroke's pixels that lie in the node, the purity is the share of positive pixels among
+/// the painted pixels in the node, l is the long axis of the node's ellipse ([`Regions::axes`]), and s is the diagonal
+/// of the stroke's bounding box.
 /// `covered` holds zeros before and after the call.
 fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], covered: &mut [f64]) -> Vec<u32> {
     // Collect the nodes that hold pixels of the stroke, parents first, and count these pixels in `covered`.
