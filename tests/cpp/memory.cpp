@@ -166,12 +166,12 @@ int main() {
         const double half[] = {2, 0, 0, 0, 2, 0, 0, 0, 1};
         image.save("memory.png");
         return hash(image.warp(half, 300, 300)) ^ hash(Image::load(context, "memory.png"));
-    }, 40);
+    }, 24);
 
     starve("context", 64, [&] {
         const Context other = Context::create();
         return hash(Image::create(other, {samples, 300, 300, 3}));
-    }, 40);
+    }, 24);
 
     luxfer::DemoPhotoParams size;
     size.width = 480;
@@ -190,7 +190,7 @@ int main() {
         features.set_view(rectify);
         features.start().wait();
         return hash(features.image(LUXFER_FEATURES_CHANNELS));
-    }, 40);
+    }, 24);
 
     const auto plane = luxfer::Segment::create(context), lights = luxfer::Segment::create(context);
     const auto emission = luxfer::Emission::create(context);
@@ -217,7 +217,7 @@ int main() {
         texture.height = 300;
         emission.start(texture).wait();
         return hash(emission.image(LUXFER_EMISSION_TEXTURE));
-    }, 40);
+    }, 24);
 
     Scene::demo(context, LUXFER_DEMO_TARGET_ROOM).save("memory.glb");
     std::vector<float> lamp(8 * 8 * 3, 0.0f);
@@ -233,7 +233,7 @@ int main() {
         rough.paths = 1 << 12;
         relight.start(rough).wait();
         return std::uint64_t(1e6 * relight.report().scale[0]);
-    }, 40);
+    }, 24);
 
     const auto render = luxfer::Render::create(context);
     render.set_scene(Scene::demo(context, LUXFER_DEMO_TARGET_ROOM));
@@ -247,11 +247,11 @@ int main() {
         small.preview = 1;
         render.start(small).wait();
         return hash(render.image());
-    }, 40);
+    }, 24);
     starve("layers", 64, [&] {
         render.write_exr("memory.exr");
         return hash(render.image());
-    }, 40);
+    }, 24);
 
     const auto guides = luxfer::Guides::create(context);
     guides.set_scene(Scene::demo(context, LUXFER_DEMO_SPHERE_ON_TABLE));
@@ -267,6 +267,6 @@ int main() {
         stylize.add_guides(guides, guides, LUXFER_GUIDES_WITH_NORMALS, 0.5f);
         stylize.start(luxfer::StylizeParams(LUXFER_STYLIZE_PREVIEW)).wait();
         return hash(stylize.image());
-    }, 30);
+    }, 20);
     return check::summary("memory");
 }

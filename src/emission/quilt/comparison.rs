@@ -60,7 +60,7 @@ pub struct Comparison<'a> {
     /// Lit share of the part of the exemplar that the photo shows.
     lit_share: f64,
     is_lattice: bool,
-    /// The value b in [`TOLERANCE`]: equally good patches may exceed a times the lowest error by this.
+    /// The value b of [`TOLERANCE`], which is added to the tolerated error.
     slack: f32,
 }
 

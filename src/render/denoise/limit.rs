@@ -20,8 +20,8 @@ const LIMIT: f32 = 2.0;
 /// variance of its own. [bench filter]
 const RADIUS: usize = 1;
 
-/// Returns the largest change of each half, per channel, in units of the picture; infinite where a variance is
-/// unknown.
+/// Returns, for the value of each half of the paths, by how much the filter may change it: per channel, in units of the
+/// picture, infinite where a variance is unknown.
 pub fn limits(input: &Input, job: Job) -> Result<Planes> {
     let [one, other] = input.halves;
     let own = Planes::from_rows([one.width, one.height, 3], job.part(0.0, 0.3), |y, row| {

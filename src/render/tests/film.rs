@@ -104,7 +104,7 @@ fn a_target_sends_paths_to_where_the_error_is_and_darkens_little() {
     let mean =
         |film: &Film| film.beauty.data.iter().map(|&v| f64::from(v)).sum::<f64>() / film.beauty.data.len() as f64;
     let truth = mean(&render(&world, &viewer(), &Params { samples: 1024, ..size.clone() }));
-    let count = 16;
+    let count = 8;
     for (target_error, relative_error, pixel_error) in [(0.06, 0.0, 0.0), (0.0, 0.05, 0.0), (0.0, 0.0, 0.6)] {
         let targets = Params { samples: 1024, target_error, relative_error, pixel_error, ..size.clone() };
         let films = repeated(&world, &targets, count);
