@@ -6,12 +6,12 @@ use crate::warning::Warning;
 
 impl Results {
     /// Returns the warnings about the results that exist, each with the stage of the result, in the order of the
-    /// stages. A warning about an implausible size of the scene precedes them, with `None` instead of a stage; it is
-    /// given only if the stage Emission has run. `strokes` are the strokes from which the masks were made.
+    /// stages. If the stage Emission has run, the warnings of the scene precede them, with `None` instead of a stage.
+    /// `strokes` are the strokes from which the masks were made.
     pub fn warnings(&self, strokes: &StrokeSet) -> Vec<(Option<Stage>, Warning)> {
         let mut all = Vec::new();
         if let Some(lit) = &self.unsolved {
-            all.extend(lit.scene.implausible_size().map(|warning| (None, warning)));
+            all.extend(lit.scene.warnings().into_iter().map(|warning| (None, warning)));
         }
         let mut add = |stage, list: Vec<Warning>| all.extend(list.into_iter().map(|warning| (Some(stage), warning)));
         if let Some(view) = &self.view {
@@ -57,7 +57,7 @@ mod tests {
     use crate::segment::Segmentation;
     use crate::transfer::LitScene;
     use crate::warning::Code;
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
     use std::sync::Arc;
 
     /// Returns the warnings about an image ten columns wide. The mask of the plane covers columns `0..plane`, that of
@@ -80,10 +80,10 @@ mod tests {
     }
 
     #[test]
-    fn the_size_of_the_scene_belongs_to_no_stage_and_comes_first() {
-        let results = |height: f32| {
+    fn warnings_of_the_scene_belong_to_no_stage_and_come_first() {
+        let results = |height: f32, origin: DVec3| {
             let wall = Mesh::parallelogram(Vec3::ZERO, Vec3::X * height, Vec3::Y * height, 0);
-            let scene = Scene { meshes: vec![wall], ..Scene::default() };
+            let scene = Scene { meshes: vec![wall], origin, ..Scene::default() };
             let surface = surface::from_triangles(&scene, &[(0, 0), (0, 1)]).unwrap();
             let placed = Placed { mesh: 0, material: 0 };
             let mask = Image::new(10, 4, 1).unwrap();
@@ -93,10 +93,13 @@ mod tests {
                 ..Results::default()
             }
         };
-        let codes = |height| -> Vec<_> {
-            results(height).warnings(&StrokeSet::default()).into_iter().map(|(stage, w)| (stage, w.code)).collect()
+        let codes = |height, origin| -> Vec<_> {
+            let warnings = results(height, origin).warnings(&StrokeSet::default());
+            warnings.into_iter().map(|(stage, warning)| (stage, warning.code)).collect()
         };
-        assert_eq!(codes(2.7), [(Some(Stage::Plane), Code::EmptyMask)]);
-        assert_eq!(codes(2700.0), [(None, Code::ImplausibleSize), (Some(Stage::Plane), Code::EmptyMask)]);
+        let empty = (Some(Stage::Plane), Code::EmptyMask);
+        assert_eq!(codes(2.7, DVec3::ZERO), [empty]);
+        assert_eq!(codes(2700.0, DVec3::ZERO), [(None, Code::ImplausibleSize), empty]);
+        assert_eq!(codes(2.7, DVec3::splat(1e6)), [(None, Code::FarFromOrigin), empty]);
     }
 }
