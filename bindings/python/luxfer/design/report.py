@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,8 +25,10 @@ def save(
     solution: Solution | None = None,
     *,
     images: dict[str, bytes] | None = None,
+    scenes: Mapping[str, Checked] | None = None,
 ) -> Path:
-    """Writes a report: .html, .pdf, or .json for the record alone. Without `checked` the project is checked first.
+    """Writes a report: .html, .pdf, or .json for the record alone. Without `checked` the project is checked first, and
+    without `scenes` its light scenes are (see Project.check_scenes).
     `images` are PNG files by their captions; without them they are rendered (see pictures.views), and an empty dict
     leaves them out."""
     file = Path(path)
@@ -39,7 +42,9 @@ def save(
         checked = solution.checked if solution is not None else project.check()
     if images is None:
         images = views(project.room, project.lit(), seed=project.chosen.seed)
-    blocks = contents(project, checked, solution, images)
+    if scenes is None:
+        scenes = project.check_scenes()
+    blocks = contents(project, checked, solution, images, scenes)
     if kind == ".html":
         return _whole(file, html.page(project.name, blocks).encode())
     footer = f"{project.name}, luxfer {fingerprint.version()}, {fingerprint.digest(made_of)[:16]}"

@@ -26,11 +26,19 @@ CYLINDRICAL_UNIFORMITY = 0.1
 QUANTITIES = {
     "mean": "lx",
     "uniformity": "",
+    "minimum": "lx",
+    "diversity": "",
+    "modelling": "",
     "glare": "",
     "rendering": "",
     "density": "W/m²",
     "flux": "lm",
+    "energy": "kWh/(m² a)",
 }
+#: Quantities that follow from the light of an area.
+OF_AREAS = ("mean", "uniformity", "minimum", "diversity", "modelling")
+#: Quantities that a requirement limits on one side only.
+ONE_SIDED = {"glare": "at_most", "minimum": "at_least", "diversity": "at_most"}
 
 
 @dataclass(frozen=True)
@@ -41,12 +49,14 @@ class Requirement:
     500
     >>> Requirement("lux", "desk", at_least=500)
     Traceback (most recent call last):
-    ValueError: 'lux' is no quantity: there are mean, uniformity, glare, rendering, density, flux
+    ValueError: 'lux' is no quantity: there are mean, uniformity, minimum, diversity, modelling, glare, ...
     """
 
     quantity: str
-    """What is limited: "mean" illuminance in lux, "uniformity" (smallest over mean illuminance), "glare" (UGR),
-    "rendering" (Ra of each luminaire), "density" (W/m² of the floor) or "flux" (lumens of each luminaire)."""
+    """What is limited: "mean" illuminance in lux, "uniformity" (smallest over mean illuminance), "minimum" (illuminance
+    of the darkest point in lux), "diversity" (largest over smallest illuminance), "modelling" (mean cylindrical over mean
+    horizontal illuminance of the same points), "glare" (UGR), "rendering" (Ra of each luminaire), "density" (W/m² of the
+    floor), "flux" (lumens of each luminaire) or "energy" (LENI in kWh/m² of a year)."""
     area: str = ""
     """Name of the area or group of observers; empty for limits of the whole design."""
     at_least: float | None = None
@@ -63,8 +73,10 @@ class Requirement:
             raise ValueError(f"the requirement of {self.quantity} needs either at_least or at_most")
         if not 0 < self.limit < float("inf"):
             raise ValueError(f"the limit of {self.quantity} is {self.limit}; it must be finite and above 0")
-        if self.quantity == "glare" and self.is_minimum:
-            raise ValueError("a glare rating has no lower limit: use at_most")
+        side = ONE_SIDED.get(self.quantity)
+        if side and self.is_minimum != (side == "at_least"):
+            sides = {"at_least": "no upper limit", "at_most": "no lower limit"}
+            raise ValueError(f"a requirement of {self.quantity} has {sides[side]}: use {side}")
 
     @property
     def limit(self) -> float:
