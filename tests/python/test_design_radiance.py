@@ -7,7 +7,7 @@ import unittest
 from dataclasses import replace
 from unittest import mock
 
-from support import Case, context, luxfer, np
+from support import Case, context, np
 from test_design import HEIGHT, at_least, at_most, box, panel, project
 
 from luxfer import design
@@ -17,14 +17,35 @@ from luxfer.design.reflectance import reflectance
 
 #: Settings of rtrace for direct light alone, and for few reflections in a small room.
 DIRECT = ("-ab", "0", "-ds", "0.02", "-dj", "0", "-dc", "1")
-ROUGH = ("-ab", "20", "-aa", "0", "-ad", "128", "-as", "0", "-lr", "-20", "-lw", "4e-3", "-ds", "0.1", "-dj", "0", "-dc", "1")
+ROUGH = (
+    "-ab",
+    "20",
+    "-aa",
+    "0",
+    "-ad",
+    "128",
+    "-as",
+    "0",
+    "-lr",
+    "-20",
+    "-lw",
+    "4e-3",
+    "-ds",
+    "0.1",
+    "-dj",
+    "0",
+    "-dc",
+    "1",
+)
 HAS_RADIANCE = importlib.util.find_spec("pyradiance") is not None
 
 
 def lopsided() -> design.Product:
     """A luminaire of 0.4 by 0.2 m whose intensity is a cosine with a lobe around C = 90."""
     gammas, planes = range(0, 181, 5), range(0, 361, 10)
-    light = lambda c, g: max(0.0, math.cos(math.radians(g))) * (1 + math.sin(math.radians(g)) * math.sin(math.radians(c)))  # noqa: E731
+    light = lambda c, g: (
+        max(0.0, math.cos(math.radians(g))) * (1 + math.sin(math.radians(g)) * math.sin(math.radians(c)))
+    )  # noqa: E731
     rows = [" ".join(f"{900 * light(c, g):.6g}" for g in gammas) for c in planes]
     text = (
         f"IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 {len(gammas)} {len(planes)} 1 2 0.2 0.4 0\n1 1 30\n"
@@ -36,10 +57,14 @@ def lopsided() -> design.Product:
 class Exported(Case):
     def test_the_files_hold_the_design(self):
         lit = project(0.5, 2, 16)
-        lit = replace(lit, luminaires=design.dimmed(lit.luminaires, (1, 0.25)), areas=(*lit.areas, areas.cylindrical(lit.room)))
+        lit = replace(
+            lit, luminaires=design.dimmed(lit.luminaires, (1, 0.25)), areas=(*lit.areas, areas.cylindrical(lit.room))
+        )
         folder = radiance.export(lit, self.folder / "out")
         listed = json.loads((folder / "index.json").read_text())
-        self.assertEqual([lamp["factor"] / listed["luminaires"][0]["factor"] for lamp in listed["luminaires"]], [1, 0.25])
+        self.assertEqual(
+            [lamp["factor"] / listed["luminaires"][0]["factor"] for lamp in listed["luminaires"]], [1, 0.25]
+        )
         self.assertEqual((folder / listed["luminaires"][0]["photometry"]).read_bytes(), panel().photometry)
         self.assertEqual(list(listed["areas"]), ["desk", "faces", "faces-up"])
         points = np.loadtxt(folder / listed["areas"]["desk"])
@@ -114,7 +139,10 @@ class Recomputed(Case):
         desk = areas.task(lit.room, "desk", (1.2, 1.0, 2.8, 2.0), 0.75)
         lit = replace(lit, luminaires=lamps, areas=(desk, areas.cylindrical(lit.room, border=1.2)))
         lit = lit.requiring(
-            at_least("mean", 100), at_least("uniformity", 0.5), at_most("modelling", 0.9, "faces"), at_most("density", 9)
+            at_least("mean", 100),
+            at_least("uniformity", 0.5),
+            at_most("modelling", 0.9, "faces"),
+            at_most("density", 9),
         )
         found = lit.check()
         radiance.export(lit, self.folder)

@@ -5,7 +5,7 @@ import unittest
 from dataclasses import replace
 
 from support import Case, context, luxfer, np
-from test_design import LENGTH, WIDTH, at_least, at_most, panel, project
+from test_design import LENGTH, WIDTH, at_least, at_most, project
 
 from luxfer import design
 from luxfer.design import areas, emergency, fingerprint
@@ -129,7 +129,9 @@ class Emergency(Case):
         lit = project()
         for maintained, level in ((100, 15), (500, 50)):
             found = emergency.requirements(lit.areas, maintained)
-            self.assertEqual([(r.quantity, r.limit) for r in found], [("mean", level), ("uniformity", 0.1), ("rendering", 40)])
+            self.assertEqual(
+                [(r.quantity, r.limit) for r in found], [("mean", level), ("uniformity", 0.1), ("rendering", 40)]
+            )
         with self.assertRaisesRegex(ValueError, "give its maintained illuminance"):
             emergency.requirements(lit.areas)
 
@@ -283,7 +285,9 @@ class Reported(Case):
         hashes.add(fingerprint.digest(replace(lit, standby=design.Standby(1)).record()))
         self.assertEqual(len(hashes), len(states) + 1)
         named = replace(lit, scenes=(design.LightScene("a", [0, 0.4]),))
-        self.assertEqual(fingerprint.digest(named.record()), fingerprint.digest(replace(lit, scenes=states[2]).record()))
+        self.assertEqual(
+            fingerprint.digest(named.record()), fingerprint.digest(replace(lit, scenes=states[2]).record())
+        )
 
 
 if __name__ == "__main__":

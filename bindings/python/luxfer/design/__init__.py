@@ -4,7 +4,7 @@ closest to a photo's look, and a report.
 A Project holds a room, luminaires, areas, observers and requirements. Lengths are metres unless a unit is given.
 """
 
-from . import areas, emergency, observers, standard
+from . import areas, emergency, ifc, observers, radiance, standard
 from .check import Checked, Finding, Settings, check
 from .command import main
 from .energy import Energy, Hours, Standby
@@ -40,11 +40,13 @@ __all__ = [
     "distance",
     "emergency",
     "from_transfer",
+    "ifc",
     "layout",
     "lit_scene",
     "main",
     "observers",
     "place",
+    "radiance",
     "requirements",
     "save",
     "solve",

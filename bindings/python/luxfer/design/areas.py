@@ -217,7 +217,9 @@ def cylindrical(room: Room, name: str = "faces", height: float = SEATED, border:
 def horizontal(area: Area) -> Area:
     """The points of a cylindrical area with the plane that looks up, for modelling."""
     if area.kind != "cylindrical":
-        raise ValueError(f"modelling compares cylindrical with horizontal illuminance: {area.name!r} is no cylindrical area")
+        raise ValueError(
+            f"modelling compares cylindrical with horizontal illuminance: {area.name!r} is no cylindrical area"
+        )
     return replace(area, kind="horizontal", patches=(replace(area.patches[0], normal=np.array([0.0, 1.0, 0.0])),))
 
 

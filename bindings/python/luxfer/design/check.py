@@ -264,7 +264,9 @@ def _extreme(r: Requirement, field: Field, level: float, samples: int) -> Findin
     extremes, wide = field.extremes, 2 * level - 1
     if r.quantity == "minimum":
         # The planes of cylindrical illuminance have an error of their own.
-        met, missed = (extremes.smallest_at_least(r.limit * f)[i] for i, f in ((0, 1 + field.bias), (1, 1 - field.bias)))
+        met, missed = (
+            extremes.smallest_at_least(r.limit * f)[i] for i, f in ((0, 1 + field.bias), (1, 1 - field.bias))
+        )
         value, (low, high) = extremes.smallest, extremes.interval_of_smallest(wide)
         low, high = low * (1 - field.bias), high * (1 + field.bias)
     else:

@@ -132,8 +132,7 @@ def _summary(
         ("Confidence of each result", percent(project.chosen.confidence)),
         (
             "Luminaires",
-            f"{sum(1 for lamp in lamps if lamp.flux > 0)} in use, {sum(lamp.flux for lamp in lamps):,.0f} lm as "
-            f"dimmed",
+            f"{sum(1 for lamp in lamps if lamp.flux > 0)} in use, {sum(lamp.flux for lamp in lamps):,.0f} lm as dimmed",
         ),
         ("Power", f"{power:.0f} W, {power / room.floor_area:.2f} W/m²" if known else "not stated for all luminaires"),
     ]
@@ -250,7 +249,7 @@ def _leni(project: Project) -> list[Block]:
         Paragraph(total),
         Table(header, tuple(rows), (0.24, 0.1, 0.11, 0.11, 0.09, 0.09, 0.09, 0.17)),
         Paragraph(
-            "W F_C F_O (t_D F_D + t_N) / 1000 for each light scene; the hours and factors are those of the design's author.",
+            "W F_C F_O (t_D F_D + t_N) / 1000 for each light scene; hours and factors are those of the design's author.",
             "small",
         ),
     ]

@@ -1,8 +1,8 @@
 """Emergency escape lighting by EN 1838: escape routes, open areas and tasks of high risk, with their requirements.
 
-The standard counts the light that comes straight from the luminaires, without reflections, so emergency light is checked
-in a black copy of the room (`LightScene.direct`). Its dimmers are the shares of the luminaires' flux on the emergency
-supply.
+The standard counts the light that comes straight from the luminaires, without reflections, so emergency light is
+checked in a black copy of the room (`LightScene.direct`). Its dimmers are the shares of the luminaires' flux on the
+emergency supply.
 
 Not modelled: signs, the time until the light is there, and the glare limits of the intensity of single luminaires.
 """
@@ -47,8 +47,8 @@ def escape_route(room: Room, name: str, rectangle: Sequence[float], unit: str = 
     along, wide = (a1 - a0, b1 - b0) if a1 - a0 >= b1 - b0 else (b1 - b0, a1 - a0)
     if not 0 < wide <= WIDEST:
         raise ValueError(
-            f"the escape route {name!r} is {wide:g} m wide: one up to {WIDEST:g} m has a centre line; give a wider one as "
-            "several routes side by side, or as an open area"
+            f"the escape route {name!r} is {wide:g} m wide: one up to {WIDEST:g} m has a centre line; give a wider "
+            "one as several routes side by side, or as an open area"
         )
     _inside(room, name, (a0, b0, a1, b1))
     if a1 - a0 >= b1 - b0:

@@ -5,8 +5,9 @@
     W_P = (P_pc (t_y - t_D - t_N) + P_em t_em) / 1000
 
 P is the power of a light scene in watts, t_D and t_N its hours with and without daylight, and F_C, F_O and F_D the
-factors of constant illuminance, occupancy and daylight, which depend on sensors and the building; the standard's annexes
-have values for them.
+factors of constant illuminance, occupancy and daylight, which depend on sensors and the building; the standard's
+annexes have values for them. P_pc is the power of the controls while the light is off, t_y the 8760 hours of a year,
+and P_em the power that charges the batteries of emergency light during t_em hours.
 """
 
 from __future__ import annotations
@@ -71,8 +72,8 @@ class Standby:
     def __post_init__(self) -> None:
         if min(self.controls, self.charging) < 0 or not 0 <= self.charging_hours <= YEAR:
             raise ValueError(
-                f"standby of {self.controls:g} W and {self.charging:g} W for {self.charging_hours:g} hours: powers are at "
-                f"least 0, and hours at most {YEAR:g}"
+                f"standby of {self.controls:g} W and {self.charging:g} W for {self.charging_hours:g} hours: powers are "
+                f"at least 0, and hours at most {YEAR:g}"
             )
 
 

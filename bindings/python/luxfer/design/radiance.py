@@ -1,8 +1,8 @@
 """A design as files of Radiance, and its recomputation from these files by Radiance as a second opinion.
 
-`export` writes the room with matte surfaces, the luminaires by their IES files, and the points of all areas. `recompute`
-runs Radiance's ies2rad, oconv and rtrace on the folder, which come with `pip install luxfer[radiance]` or with an installed
-Radiance, and compares: a requirement is confirmed if both programs decide it alike.
+`export` writes the room with matte surfaces, the luminaires by their IES files, and the points of all areas.
+`recompute` runs Radiance's ies2rad, oconv and rtrace on the folder, which come with `pip install luxfer[radiance]` or
+with an installed Radiance, and compares: a requirement is confirmed if both programs decide it alike.
 
 Not exported: mirror images of glossy surfaces, textures (their mean colour stands for them), light of the surroundings.
 """
@@ -42,7 +42,26 @@ EFFICACY = 179.0
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 #: Settings of rtrace: rays at each reflection, which end at random so that no light is lost, no interpolation between
 #: points, and subdivided luminaires. [convention]
-RTRACE = ("-ab", "30", "-aa", "0", "-ad", "512", "-as", "0", "-lr", "-30", "-lw", "1e-3", "-ds", "0.05", "-dj", "0", "-dc", "1")
+RTRACE = (
+    "-ab",
+    "30",
+    "-aa",
+    "0",
+    "-ad",
+    "512",
+    "-as",
+    "0",
+    "-lr",
+    "-30",
+    "-lw",
+    "1e-3",
+    "-ds",
+    "0.05",
+    "-dj",
+    "0",
+    "-dc",
+    "1",
+)
 #: Quantities of requirements that are recomputed.
 RECOMPUTED = ("mean", "uniformity", "minimum", "diversity", "modelling")
 #: Name of the file that lists what the folder holds.
@@ -77,7 +96,9 @@ class Second:
     def __str__(self) -> str:
         f = self.finding
         unit = f" {f.requirement.unit}" if f.requirement.unit else ""
-        word = "confirmed" if self.confirms else f"{f.outcome} by luxfer, {'holds' if self.holds else 'fails'} by Radiance"
+        word = (
+            "confirmed" if self.confirms else f"{f.outcome} by luxfer, {'holds' if self.holds else 'fails'} by Radiance"
+        )
         change = f" ({100 * self.difference:+.1f} %)" if math.isfinite(self.difference) else ""
         return f"{f.requirement}: {f.value:.4g} and {self.value:.4g}{unit}{change}, {word}"
 
@@ -178,7 +199,9 @@ def _room(scene: Scene) -> str:
         r, g, b = reflectance(scene, index)
         through = float(scene.material(index)["transmission"]) * (1 - float(scene.material(index)["metallic"]))
         if through > 0:
-            parts.append(f"void trans m{index} 0 0 7 {r + through:.6g} {g + through:.6g} {b + through:.6g} 0 0 {through:.6g} 1")
+            parts.append(
+                f"void trans m{index} 0 0 7 {r + through:.6g} {g + through:.6g} {b + through:.6g} 0 0 {through:.6g} 1"
+            )
         else:
             parts.append(f"void plastic m{index} 0 0 5 {r:.6g} {g:.6g} {b:.6g} 0 0")
     for mesh in range(scene.counts.meshes):

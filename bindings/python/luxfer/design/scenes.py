@@ -26,8 +26,8 @@ class LightScene:
     name: str
     """Name as the report prints it."""
     dimmers: Dimmers = None
-    """Shares of the full flux: one for each luminaire, or by the name of its group, where "*" stands for all groups that
-    are not named; without "*" these are off. None: the dimmers of the design."""
+    """Shares of the full flux: one for each luminaire, or by the name of its group, where "*" stands for all groups
+    that are not named; without "*" these are off. None: the dimmers of the design."""
     requirements: tuple[Requirement, ...] = ()
     """What holds in this state."""
     hours: Hours | None = None

@@ -53,10 +53,10 @@ class Requirement:
     """
 
     quantity: str
-    """What is limited: "mean" illuminance in lux, "uniformity" (smallest over mean illuminance), "minimum" (illuminance
-    of the darkest point in lux), "diversity" (largest over smallest illuminance), "modelling" (mean cylindrical over mean
-    horizontal illuminance of the same points), "glare" (UGR), "rendering" (Ra of each luminaire), "density" (W/m² of the
-    floor), "flux" (lumens of each luminaire) or "energy" (LENI in kWh/m² of a year)."""
+    """What is limited: "mean" illuminance in lux, "uniformity" (smallest over mean illuminance), "minimum"
+    (illuminance of the darkest point in lux), "diversity" (largest over smallest illuminance), "modelling" (mean
+    cylindrical over mean horizontal illuminance of the same points), "glare" (UGR), "rendering" (Ra of each luminaire),
+    "density" (W/m² of the floor), "flux" (lumens of each luminaire) or "energy" (LENI in kWh/m² of a year)."""
     area: str = ""
     """Name of the area or group of observers; empty for limits of the whole design."""
     at_least: float | None = None
