@@ -1,6 +1,8 @@
 """Designs as building models and back, and models as other programs write them; skipped without ifcopenshell."""
 
+import contextlib
 import importlib.util
+import io
 import math
 import unittest
 from dataclasses import replace
@@ -279,6 +281,26 @@ class OtherPrograms(Case):
         settings = design.Settings(maintenance=0.8, samples=16, max_samples=16)
         lit = design.Project(room, found.luminaires, (desk,), settings=settings).requiring(at_least("mean", 1))
         self.assertTrue(lit.check().passes)
+
+    def test_the_command_line_reads_and_writes_models(self):
+        model = Foreign()
+        model.fixture("a", (2500.0, 2000.0, 2900.0), kind=model.kind())
+        model.file.write(str(self.folder / "in.ifc"))
+        words = [str(self.folder / "in.ifc"), "--place", "corridors", "--maintenance", "0.8"]
+        out, wrong = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(wrong):
+            self.assertEqual(design.main(words), 2)
+            task = ["--task", "1,1,3,3,0.75", "--out", str(self.folder / "out.ifc")]
+            self.assertEqual(design.main([*words, *task]), 6)
+            self.assertEqual(design.main([*words, *task, "--space", "9"]), 3)
+            self.assertEqual(
+                design.main(["demo:target-room", *words[1:], "--product", "x.ies", *task, "--space", "9"]), 2
+            )
+        self.assertIn("no lighting zone in this space", wrong.getvalue())
+        self.assertIn("has 0 spaces called '9'", wrong.getvalue())
+        self.assertIn("--space names a space of an .ifc file", wrong.getvalue())
+        back = ifc.load(context(), self.folder / "out.ifc")
+        self.assertEqual((back.illuminance, len(back.luminaires), len(back.areas)), (100, 1, 1))
 
     def test_a_type_that_refers_to_a_file(self):
         model = Foreign()

@@ -1,5 +1,7 @@
 """Light scenes of a design: emergency light and energy against sums by hand, intervals of extremes, modelling."""
 
+import csv
+import io
 import math
 import unittest
 from dataclasses import replace
@@ -8,7 +10,7 @@ from support import Case, context, luxfer, np
 from test_design import LENGTH, WIDTH, at_least, at_most, project
 
 from luxfer import design
-from luxfer.design import areas, emergency, fingerprint
+from luxfer.design import areas, emergency, fingerprint, schedule
 from luxfer.design.energy import YEAR
 from luxfer.design.intervals import Extremes
 
@@ -249,6 +251,34 @@ class EnergyOfAYear(Case):
         twice = [design.LightScene(n, hours=design.Hours(4000, 1000)) for n in "ab"]
         with self.assertRaisesRegex(ValueError, "used 10000 hours a year"):
             replace(grouped(), scenes=twice).energy()
+
+
+class Schedules(Case):
+    def test_the_luminaires_and_their_light_scenes(self):
+        lit = grouped()
+        product = replace(lit.luminaires[0].product, reference="panel.gldf", name='=cmd|"x"')
+        lamps = [replace(lit.luminaires[0], product=product, dimmer=0.5, c0=(0, 0, 1)), lit.luminaires[1]]
+        states = (design.LightScene("slides", {"door": 0.2}),)
+        lit = replace(lit, luminaires=lamps, scenes=states, unit="mm")
+        one, two = csv.DictReader(io.StringIO(schedule.luminaires(lit), newline=""))
+        place = [float(one[n]) for n in ("along_mm", "across_mm", "height_mm", "turn_deg", "tilt_deg")]
+        np.testing.assert_allclose(place, (1000, 1500, 2790, 90, 0), atol=1e-3)
+        self.assertEqual([one[n] for n in ("reference", "group", "dimmer")], ["panel.gldf", "window", "0.5"])
+        self.assertEqual((one["flux_lm"], one["full_flux_lm"], one["power_w"]), ("1500", "3000", "15"))
+        self.assertEqual([row["dimmer in slides"] for row in (one, two)], ["0", "0.2"])
+        self.assertEqual(one["product"], ' =cmd|"x"', "a spreadsheet must not compute it")
+
+    def test_the_results_of_all_light_scenes(self):
+        state = design.LightScene("slides", {"*": 0.1}, (at_least("mean", 1000),))
+        lit = replace(grouped(), scenes=(state,)).requiring(at_least("mean", 1), at_most("density", 9))
+        path = design.save(lit, self.folder / "lamps.csv", found := lit.check())
+        self.assertEqual(path.read_bytes().decode(), schedule.luminaires(lit))
+        text = (self.folder / "lamps-results.csv").read_bytes().decode()
+        rows = list(csv.DictReader(io.StringIO(text, newline="")))
+        self.assertEqual([r["light scene"] for r in rows], ["", "", "slides"])
+        self.assertEqual([r["outcome"] for r in rows], ["passes", "passes", "fails"])
+        self.assertAlmostEqual(float(rows[0]["value"]), found.findings[0].value, delta=0.01)
+        self.assertLess(float(rows[0]["low"]), float(rows[0]["value"]))
 
 
 class Reported(Case):

@@ -354,7 +354,8 @@ def _products(project: Project, names: Mapping[str, str]) -> Table:
         power = f"{p.watts:.1f} W, {p.flux / p.watts:.0f} lm/W" if p.watts > 0 else "not stated"
         size = " × ".join(shown(abs(v), project.unit) for v in p.size) + f" {project.unit}"
         rendering = f"{p.rendering:g}" if p.rendering else "not stated"
-        rows.append((name, p.name, f"{p.flux:.0f} lm", power, rendering, size, p.hash))
+        title = f"{p.name} ({p.reference})" if p.reference else p.name
+        rows.append((name, title, f"{p.flux:.0f} lm", power, rendering, size, p.hash))
     header = ("", "Product", "Flux", "Power", "Ra", "Opening", "Photometry")
     return Table(header, tuple(rows), (0.05, 0.25, 0.1, 0.2, 0.1, 0.18, 0.12))
 

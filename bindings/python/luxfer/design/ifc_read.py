@@ -246,7 +246,7 @@ class _Model:
             peak = max(c.Red, c.Green, c.Blue)
             colour = (c.Red / peak, c.Green / peak, c.Blue / peak) if peak > 0 else colour
         return Luminaire(
-            replace(product, flux=full),
+            replace(product, flux=full, reference=str(getattr(kind, "Tag", None) or "")),
             _three(place),
             dimmer,
             _three(level(-frame[:3, 2])),

@@ -258,6 +258,7 @@ class _Writer:
         for product in {_key(lamp.product): lamp.product for lamp in self.project.luminaires}.values():
             key = _key(product)
             kind = self.root("IfcLightFixtureType", key, Name=product.name, PredefinedType="NOTDEFINED")
+            kind.Tag = product.reference or None
             document = self.add(
                 "IfcDocumentReference",
                 Location=f"{FOLDER}/{_file(product)}",

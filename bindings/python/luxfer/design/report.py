@@ -1,4 +1,4 @@
-"""Writes the report of a project as HTML or PDF."""
+"""Writes the report of a project as HTML or PDF, its schedules as CSV, and its building model as IFC."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from . import fingerprint, html, pdf
+from . import fingerprint, html, ifc_write, pdf, schedule
 from .content import contents
 from .pictures import views
 
@@ -27,23 +27,29 @@ def save(
     images: dict[str, bytes] | None = None,
     scenes: Mapping[str, Checked] | None = None,
 ) -> Path:
-    """Writes a report: .html, .pdf, or .json for the record alone. Without `checked` the project is checked first, and
-    without `scenes` its light scenes are (see Project.check_scenes).
+    """Writes a report: .html, .pdf, or .json for the record alone; .csv for the schedule of luminaires, with one of the
+    results beside it whose name ends in -results.csv; .ifc for a building model (see luxfer.design.ifc). Without
+    `checked` the project is checked first, and without `scenes` its light scenes are (see Project.check_scenes).
     `images` are PNG files by their captions; without them they are rendered (see pictures.views), and an empty dict
     leaves them out."""
     file = Path(path)
     kind = file.suffix.lower()
-    if kind not in (".html", ".pdf", ".json"):
-        raise ValueError(f"a report is an .html, a .pdf or a .json file, not {file.name!r}")
+    if kind not in (".html", ".pdf", ".json", ".csv", ".ifc"):
+        raise ValueError(f"a report is an .html, .pdf, .json, .csv or .ifc file, not {file.name!r}")
     made_of = project.record()
     if kind == ".json":
         return _whole(file, (json.dumps(made_of, indent=1, sort_keys=True) + "\n").encode())
     if checked is None:
         checked = solution.checked if solution is not None else project.check()
-    if images is None:
-        images = views(project.room, project.lit(), seed=project.chosen.seed)
+    if kind == ".ifc":
+        return ifc_write.save(project, file, checked)
     if scenes is None:
         scenes = project.check_scenes()
+    if kind == ".csv":
+        _whole(file.with_name(f"{file.stem}-results.csv"), schedule.results(checked, scenes).encode())
+        return _whole(file, schedule.luminaires(project).encode())
+    if images is None:
+        images = views(project.room, project.lit(), seed=project.chosen.seed)
     blocks = contents(project, checked, solution, images, scenes)
     if kind == ".html":
         return _whole(file, html.page(project.name, blocks).encode())
