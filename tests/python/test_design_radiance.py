@@ -104,6 +104,16 @@ class Exported(Case):
         self.assertTrue(radiance.Second(replace(finding, outcome="fails"), 99).confirms)
         self.assertFalse(radiance.Second(replace(finding, outcome="undecided"), 101).confirms)
 
+    def test_the_report_shows_both(self):
+        lit = project(samples=16).requiring(at_least("mean", 1), at_least("uniformity", 0.1))
+        found = lit.check()
+        second = [radiance.Second(found.findings[0], 123.0), radiance.Second(found.findings[1], 0.09)]
+        page = design.save(lit, self.folder / "report.html", found, images={}, second=second).read_text()
+        section = page[page.index("Recomputed by Radiance") : page.index("To make this report again")]
+        for words in ("123 lx", "0.09", '<td class="good"><b>confirmed', '<td class="bad"><b>not confirmed'):
+            self.assertIn(words, section)
+        self.assertNotIn("Recomputed", design.save(lit, self.folder / "a.html", found, images={}).read_text())
+
     def test_a_missing_program_is_named(self):
         lit = project(samples=16).requiring(at_least("mean", 1))
         radiance.export(lit, self.folder)

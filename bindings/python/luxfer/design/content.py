@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from .luminaires import Luminaire
     from .measure import Field
     from .project import Project
+    from .radiance import Second
     from .scenes import LightScene
     from .solve import Solution
 
@@ -86,8 +87,10 @@ def contents(
     solution: Solution | None = None,
     pictures: dict[str, bytes] | None = None,
     scenes: Mapping[str, Checked] | None = None,
+    second: Sequence[Second] = (),
 ) -> list[Block]:
-    """All blocks of a report; `scenes` are the checks of the light scenes by name."""
+    """All blocks of a report; `scenes` are the checks of the light scenes by name, and `second` the numbers of
+    Radiance."""
     made_of = project.record()
     blocks: list[Block] = [Heading(project.name), *_summary(project, checked, solution, made_of, scenes or {})]
     blocks += [Heading("Requirements", 2), _requirements(checked)]
@@ -108,6 +111,7 @@ def contents(
         blocks.append(Heading("Pictures", 1, True))
         blocks += [Figure(data, caption) for caption, data in pictures.items()]
     blocks += [Heading("Basis of the calculation", 1, True), *_basis(project, checked)]
+    blocks += _seconds(second)
     blocks += [Heading("To make this report again", 2), *_again(made_of)]
     blocks += [Heading("Signature", 2), Signature(project.author)]
     return blocks
@@ -174,6 +178,30 @@ def _scenes(project: Project, scenes: Mapping[str, Checked]) -> list[Block]:
             *_areas(here, found, False),
         ]
     return out
+
+
+def _seconds(second: Sequence[Second]) -> list[Block]:
+    """The numbers of Radiance beside those of this package."""
+    if not second:
+        return []
+    rows = []
+    for s in second:
+        r = s.finding.requirement
+        change = f"{100 * s.difference:+.1f} %" if math.isfinite(s.difference) else "–"
+        ours, theirs = _found(s.finding), _number(s.value, r.unit)
+        rows.append((str(r), ours, theirs, change, "confirmed" if s.confirms else "not confirmed"))
+    header = ("Requirement", "Found [interval]", "By Radiance", "Difference", "Result")
+    tones = tuple("passes" if s.confirms else "fails" for s in second)
+    return [
+        Heading("Recomputed by Radiance", 2),
+        Table(header, tuple(rows), (0.36, 0.22, 0.14, 0.12, 0.16), tones),
+        Paragraph(
+            "Room, luminaires and points were written to files, from which Radiance (ies2rad, oconv, rtrace) computed the "
+            "illuminance with matte surfaces of equal reflectance. A requirement is confirmed if Radiance's number decides "
+            "it as this report does. Radiance's numbers are random, too.",
+            "small",
+        ),
+    ]
 
 
 def _state_basis(here: Project, state: LightScene) -> str:
@@ -485,7 +513,7 @@ def _basis(project: Project, checked: Checked) -> list[Block]:
 
 
 def _again(made_of: dict) -> list[Block]:
-    keep = {k: v for k, v in made_of.items() if k in ("form", "luxfer", "scene", "settings", "areas", "observers")}
+    keep = {k: v for k, v in made_of.items() if k in ("form", "luxfer", "scene", "settings", "areas", "observers", "standby")}
     lamps: Sequence[dict] = made_of["luminaires"]
     keep["photometry"] = sorted({lamp["photometry"] for lamp in lamps})
     return [

@@ -69,7 +69,7 @@ def plan(
         for a0, b0, a1, b1 in _hull(area):
             corners = [scale.at(p) for p in ((a0, b0), (a1, b0), (a1, b1), (a0, b1), (a0, b0))]
             drawing.line(corners, colour, 1.0 if area.kind == "task" else 0.7, area.kind != "task")
-            if area.kind == "escape line":  # its band has the name
+            if area.kind == "escape line":  # its band stands around it
                 continue
             # The name stands below the upper edge, except of the background, where it stands above the lower one.
             x, y = scale.at((a0, b1)) if low else scale.at((a0, b0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from .pictures import views
 if TYPE_CHECKING:
     from .check import Checked
     from .project import Project
+    from .radiance import Second
     from .solve import Solution
 
 
@@ -26,10 +27,12 @@ def save(
     *,
     images: dict[str, bytes] | None = None,
     scenes: Mapping[str, Checked] | None = None,
+    second: Sequence[Second] = (),
 ) -> Path:
     """Writes a report: .html, .pdf, or .json for the record alone; .csv for the schedule of luminaires, with one of the
     results beside it whose name ends in -results.csv; .ifc for a building model (see luxfer.design.ifc). Without
     `checked` the project is checked first, and without `scenes` its light scenes are (see Project.check_scenes).
+    `second` is a recomputation by Radiance (see luxfer.design.radiance), which the report shows beside its own numbers.
     `images` are PNG files by their captions; without them they are rendered (see pictures.views), and an empty dict
     leaves them out."""
     file = Path(path)
@@ -50,7 +53,7 @@ def save(
         return _whole(file, schedule.luminaires(project).encode())
     if images is None:
         images = views(project.room, project.lit(), seed=project.chosen.seed)
-    blocks = contents(project, checked, solution, images, scenes)
+    blocks = contents(project, checked, solution, images, scenes, second)
     if kind == ".html":
         return _whole(file, html.page(project.name, blocks).encode())
     footer = f"{project.name}, luxfer {fingerprint.version()}, {fingerprint.digest(made_of)[:16]}"
