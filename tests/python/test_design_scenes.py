@@ -1,5 +1,6 @@
 """Light scenes of a design: emergency light and energy against sums by hand, intervals of extremes, modelling."""
 
+import contextlib
 import csv
 import io
 import math
@@ -251,6 +252,48 @@ class EnergyOfAYear(Case):
         twice = [design.LightScene(n, hours=design.Hours(4000, 1000)) for n in "ab"]
         with self.assertRaisesRegex(ValueError, "used 10000 hours a year"):
             replace(grouped(), scenes=twice).energy()
+
+
+class OwnPlaces(Case):
+    HEAD = "name,table,illuminance,uniformity,glare,rendering,walls\n"
+
+    def read(self, text):
+        path = self.folder / "places.csv"
+        path.write_text(text)
+        return design.places_from(path)
+
+    def test_rows_of_a_file(self):
+        rows = self.read(self.HEAD + "Workshop: fine work,Table 99,750,0.7,19,90,\nStore,Table 99,100,0.4,25,80,30\n")
+        row = design.place("fine work", rows)
+        self.assertEqual((row.illuminance, row.rendering, row.walls, row.number), (750, 90, 0, ""))
+        found = design.requirements(row, {"bench": "task", "walls": "walls"})
+        self.assertEqual(
+            [(r.quantity, r.limit) for r in found], [("mean", 750), ("uniformity", 0.7), ("rendering", 90)]
+        )
+        self.assertEqual(found[0].reference, "EN 12464-1:2021, Table 99")
+        with self.assertRaisesRegex(KeyError, "no place is called '34.2'.*one of: Workshop: fine work; Store"):
+            design.place("34.2", rows)
+
+    def test_the_command_line_takes_them(self):
+        self.read(self.HEAD + "Workshop,Table 99,750,0.7,19,90,\n")
+        out, wrong = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(wrong):
+            self.assertEqual(design.main(["--places", "--places-from", str(self.folder / "places.csv")]), 0)
+            self.assertEqual(design.main(["--places", "--places-from", str(self.folder / "none.csv")]), 3)
+        self.assertEqual(out.getvalue().split(), ["Workshop"])
+        self.assertIn("none.csv", wrong.getvalue())
+
+    def test_rows_that_are_none(self):
+        for text, words in (
+            ("name,lux\na,500\n", "columns that are no fields of a place: lux; there are number, name, table"),
+            ("name,table,illuminance\na,b,500\n", "no column: uniformity, glare, rendering"),
+            (self.HEAD + "a,b,500,0.6,19,80,\nc,d,much,0.6,19,80,\n", "line 3 .*: illuminance is 'much'"),
+            (self.HEAD + "a,b,500,,19,80,\n", "line 2 .*: uniformity is 0; it must be finite and above 0"),
+            (self.HEAD + ",b,500,0.6,19,80,\n", "line 2 .* has no name"),
+            ("", "no column: name"),
+        ):
+            with self.assertRaisesRegex(ValueError, words):
+                self.read(text)
 
 
 class Schedules(Case):

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import importlib.util
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from ..context import Context
     from ..design import Checked, Product, Project, Solution
     from ..design.ifc import Building
+    from ..design.standard import Place
     from ..scene import Scene
 
 SUMMARY = "check a lighting design against EN 12464-1, and write its report"
@@ -48,6 +50,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     room.add_argument("--ceiling", metavar="NAME", help="object or material that is the ceiling")
     room.add_argument("--places", action="store_true", help="only list the places that --place knows")
     room.add_argument("--place", help="number or name of a place, such as 34.2")
+    room.add_argument("--places-from", metavar="FILE", help="a .csv file with places of your own")
     corners = "A0,B0,A1,B1,HEIGHT"
     room.add_argument(
         "--task", action="append", default=[], metavar=corners, help="a task area in the plan; may be repeated"
@@ -79,7 +82,7 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace, console: Console) -> Exit:
     """Checks or solves the design."""
     if args.places:
-        return _places(console)
+        return _places(args, console)
     outs = _checked_options(args)
     from . import files
 
@@ -101,11 +104,22 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     return code if checked.passes else Exit.UNMET
 
 
-def _places(console: Console) -> Exit:
-    from ..design.standard import PLACES
+def _places(args: argparse.Namespace, console: Console) -> Exit:
+    known = _known_places(args)
+    rows = [{"number": p.number, "name": p.name} for p in known]
+    return console.print_result({"command": "design", "places": rows}, [f"{p.number:8}{p.name}" for p in known])
 
-    rows = [{"number": p.number, "name": p.name} for p in PLACES]
-    return console.print_result({"command": "design", "places": rows}, [f"{p.number:8}{p.name}" for p in PLACES])
+
+def _known_places(args: argparse.Namespace) -> Sequence[Place]:
+    """Returns the places of the user's file, or those that the package knows."""
+    from ..design.standard import PLACES, places_from
+
+    if args.places_from is None:
+        return PLACES
+    try:
+        return places_from(args.places_from)
+    except (ValueError, OSError) as error:
+        raise unreadable(args.places_from, error) from None
 
 
 def _checked_options(args: argparse.Namespace) -> list[Path]:
@@ -123,7 +137,7 @@ def _checked_options(args: argparse.Namespace) -> list[Path]:
             "--task or --task-on is missing: the place requires the illuminance of a task area; where the task may be "
             "anywhere, it is the whole floor (--task 0,0,LENGTH,WIDTH,HEIGHT)"
         )
-    outs = [files.check_file("--out", n, files.shared_input(args.scene, args.product), REPORTS) for n in args.out]
+    outs = [files.check_file("--out", n, files.shared_input(args.scene, args.product, args.places_from), REPORTS) for n in args.out]
     if any(path.suffix.lower() == ".pdf" for path in outs) and importlib.util.find_spec("reportlab") is None:
         raise failed("--out: a PDF file needs reportlab: pip install 'luxfer[report]'")
     if any(path.suffix.lower() == ".ifc" for path in outs) and importlib.util.find_spec("ifcopenshell") is None:
@@ -194,7 +208,7 @@ def _project(
     settings = Settings(args.maintenance, args.confidence, seed=args.seed)
     found, eyes = [*tasks, *areas.around_tasks(room, tasks)], [observers.at_task(room, t) for t in tasks]
     project = Project(room, lamps, found, eyes, settings=settings, unit=args.unit, name=args.name)
-    project = project.for_place(place(args.place))
+    project = project.for_place(place(args.place, _known_places(args)))
     if args.max_density is not None:
         project = project.requiring(Requirement("density", at_most=args.max_density))
     return project

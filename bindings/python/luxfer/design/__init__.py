@@ -4,7 +4,7 @@ closest to a photo's look, and a report.
 A Project holds a room, luminaires, areas, observers and requirements. Lengths are metres unless a unit is given.
 """
 
-from . import areas, emergency, ifc, observers, radiance, standard
+from . import areas, emergency, ifc, observers, radiance, schedule, standard
 from .check import Checked, Finding, Settings, check
 from .command import main
 from .energy import Energy, Hours, Standby
@@ -15,7 +15,7 @@ from .report import save
 from .rooms import Room
 from .scenes import LightScene
 from .solve import Solution, Wishes, solve
-from .standard import Place, Requirement, place, requirements
+from .standard import Place, Requirement, place, places_from, requirements
 
 __all__ = [
     "Checked",
@@ -46,9 +46,11 @@ __all__ = [
     "main",
     "observers",
     "place",
+    "places_from",
     "radiance",
     "requirements",
     "save",
+    "schedule",
     "solve",
     "standard",
 ]
