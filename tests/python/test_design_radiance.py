@@ -16,27 +16,8 @@ from luxfer.design.measure import measure
 from luxfer.design.reflectance import reflectance
 
 #: Settings of rtrace for direct light alone, and for few reflections in a small room.
-DIRECT = ("-ab", "0", "-ds", "0.02", "-dj", "0", "-dc", "1")
-ROUGH = (
-    "-ab",
-    "20",
-    "-aa",
-    "0",
-    "-ad",
-    "128",
-    "-as",
-    "0",
-    "-lr",
-    "-20",
-    "-lw",
-    "4e-3",
-    "-ds",
-    "0.1",
-    "-dj",
-    "0",
-    "-dc",
-    "1",
-)
+DIRECT = tuple("-ab 0 -ds 0.02 -dj 0 -dc 1 -dt 0".split())
+ROUGH = tuple("-ab 20 -aa 0 -ad 128 -as 0 -lr -20 -lw 4e-3 -ds 0.1 -dj 0 -dc 1 -dt 0".split())
 HAS_RADIANCE = importlib.util.find_spec("pyradiance") is not None
 
 

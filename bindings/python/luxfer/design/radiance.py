@@ -41,27 +41,9 @@ EFFICACY = 179.0
 #: Luminance of linear Rec.709 channels. [convention: BT.709]
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 #: Settings of rtrace: rays at each reflection, which end at random so that no light is lost, no interpolation between
-#: points, and subdivided luminaires. [convention]
-RTRACE = (
-    "-ab",
-    "30",
-    "-aa",
-    "0",
-    "-ad",
-    "512",
-    "-as",
-    "0",
-    "-lr",
-    "-30",
-    "-lw",
-    "1e-3",
-    "-ds",
-    "0.05",
-    "-dj",
-    "0",
-    "-dc",
-    "1",
-)
+#: points, subdivided luminaires, and a shadow ray to each luminaire, however weak. By default Radiance guesses the light
+#: of luminaires that it takes for weak, which made the means of an office floor up to 3 % too small. [convention]
+RTRACE = tuple("-ab 30 -aa 0 -ad 512 -as 0 -lr -30 -lw 1e-3 -ds 0.05 -dj 0 -dc 1 -dt 0".split())
 #: Quantities of requirements that are recomputed.
 RECOMPUTED = ("mean", "uniformity", "minimum", "diversity", "modelling")
 #: Name of the file that lists what the folder holds.
