@@ -13,7 +13,7 @@ from test_design import LENGTH, WIDTH, at_least, at_most, project
 from luxfer import design
 from luxfer.design import areas, emergency, fingerprint, schedule
 from luxfer.design.energy import YEAR
-from luxfer.design.intervals import Extremes
+from luxfer.design.intervals import Extremes, student
 
 
 def point_lamp(albedo: float = 0.0) -> design.Project:
@@ -72,6 +72,18 @@ class ExtremesOfPoints(Case):
             self.assertGreater(run.smallest_at_least(1.6)[1], 0.975)
             self.assertGreater(run.diversity_at_most(5)[0], 0.975)
             self.assertGreater(run.diversity_at_most(1.1)[1], 0.975)
+
+    def test_the_worst_pair_is_among_those_that_are_looked_at(self):
+        """Against all pairs, for points of very different errors."""
+        random = np.random.default_rng(2)
+        for _ in range(50):
+            values, errors = random.uniform(1, 2, 30), random.choice([0.0, 0.01, 0.1, 0.5], 30)
+            for limit in (1.1, 1.5, 2.5):
+                with np.errstate(divide="ignore"):
+                    gaps = limit * values[:, None] - values[None]
+                    all_pairs = gaps / np.hypot(limit * errors[:, None], errors[None])
+                met = student(float(np.nanmin(all_pairs)), 15)
+                self.assertAlmostEqual(Extremes(values, errors).diversity_at_most(limit)[0], met, places=12)
 
     def test_darkness_and_what_is_not_known(self):
         dark = Extremes(np.array([0.0, 1.0]), np.zeros(2))

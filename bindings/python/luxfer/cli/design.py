@@ -137,7 +137,8 @@ def _checked_options(args: argparse.Namespace) -> list[Path]:
             "--task or --task-on is missing: the place requires the illuminance of a task area; where the task may be "
             "anywhere, it is the whole floor (--task 0,0,LENGTH,WIDTH,HEIGHT)"
         )
-    outs = [files.check_file("--out", n, files.shared_input(args.scene, args.product, args.places_from), REPORTS) for n in args.out]
+    inputs = files.shared_input(args.scene, args.product, args.places_from)
+    outs = [files.check_file("--out", n, inputs, REPORTS) for n in args.out]
     if any(path.suffix.lower() == ".pdf" for path in outs) and importlib.util.find_spec("reportlab") is None:
         raise failed("--out: a PDF file needs reportlab: pip install 'luxfer[report]'")
     if any(path.suffix.lower() == ".ifc" for path in outs) and importlib.util.find_spec("ifcopenshell") is None:

@@ -513,7 +513,11 @@ def _basis(project: Project, checked: Checked) -> list[Block]:
 
 
 def _again(made_of: dict) -> list[Block]:
-    keep = {k: v for k, v in made_of.items() if k in ("form", "luxfer", "scene", "settings", "areas", "observers", "standby")}
+    keep = {
+        k: v
+        for k, v in made_of.items()
+        if k in ("form", "luxfer", "scene", "settings", "areas", "observers", "standby")
+    }
     lamps: Sequence[dict] = made_of["luminaires"]
     keep["photometry"] = sorted({lamp["photometry"] for lamp in lamps})
     return [

@@ -80,7 +80,12 @@ def load(
             lamps.append(model.luminaire(context, fixture, float(high[1])))
         except ValueError as error:
             notes.append(f"light fixture {_title(fixture)!r} is left out: {error}")
-    zones = [model.task(room, zone) for zone in model.zones(chosen)]
+    zones = []
+    for zone in model.zones(chosen):
+        try:
+            zones.append(model.task(room, zone))
+        except ValueError as error:
+            notes.append(f"lighting zone {_title(zone)!r} is left out: {error}")
     openings = [e for kind in ("IfcWindow", "IfcDoor") for e in model.file.by_type(kind)]
     if openings:
         notes.append(f"{len(openings)} windows and doors count as walls")
@@ -219,7 +224,7 @@ class _Model:
         """The task area of a lighting zone: the rectangle around its body in the plan, at its lower face."""
         body = self.mesh(zone)
         if body is None:
-            raise ValueError(f"the lighting zone {_title(zone)!r} has no body")
+            raise ValueError("it has no body")
         plan = np.clip(room.plan(body[0]), 0, (room.length, room.width))
         height = float(body[0][:, 1].min() - room.origin[1])
         return areas.task(room, _title(zone), (*plan.min(axis=0), *plan.max(axis=0)), height)

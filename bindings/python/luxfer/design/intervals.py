@@ -194,7 +194,7 @@ class Extremes:
         >>> Extremes(np.array([1.2, 2.0]), np.zeros(2)).smallest_at_least(1.0)
         (1.0, 0.0)
         """
-        return _all_of(_z(self.values - limit, self.errors))
+        return _all_of(_z(self.values - limit, self.errors), len(self.values))
 
     def diversity_at_most(self, limit: float) -> tuple[float, float]:
         """Confidence that the diversity is at most the limit, and that it is above.
@@ -204,11 +204,10 @@ class Extremes:
         """
         if self.smallest <= 0 and not self.errors.any():
             return 0.0, 1.0
-        pairs = [
-            _z(limit * value - self.values, np.hypot(limit * error, self.errors))
-            for value, error in zip(self.values, self.errors)
-        ]
-        return _all_of(np.concatenate(pairs))
+        dark, bright = _front(self.values, self.errors), _front(-self.values, self.errors)
+        gaps = limit * self.values[dark, None] - self.values[None, bright]
+        spreads = np.hypot(limit * self.errors[dark, None], self.errors[None, bright])
+        return _all_of(_z(gaps, spreads).reshape(-1), len(self.values) ** 2)
 
     def interval_of_smallest(self, confidence: float = 0.95) -> tuple[float, float]:
         """The two-sided interval of the smallest illuminance."""
@@ -234,13 +233,25 @@ def _z(gaps: NDArray[np.float64], spreads: NDArray[np.float64]) -> NDArray[np.fl
         return np.where(spreads == 0, np.where(gaps >= 0, np.inf, -np.inf), gaps / spreads)
 
 
-def _all_of(gaps: NDArray[np.float64]) -> tuple[float, float]:
-    """Confidence that all gaps, in standard errors, are at least 0 (intersection-union test), and that one is not
-    (Bonferroni)."""
+def _front(values: NDArray[np.float64], errors: NDArray[np.float64]) -> NDArray[np.intp]:
+    """The points of which one has the smallest gap in standard errors to any limit: those with a larger or a smaller
+    error than all points of smaller value. All points if any is not known."""
+    if np.isnan(values).any() or np.isnan(errors).any():
+        return np.arange(len(values))
+    order = np.lexsort((errors, values))
+    sorted_ = errors[order]
+    above = np.concatenate([[-np.inf], np.maximum.accumulate(sorted_)[:-1]])
+    below = np.concatenate([[np.inf], np.minimum.accumulate(sorted_)[:-1]])
+    return order[(sorted_ > above) | (sorted_ < below)]
+
+
+def _all_of(gaps: NDArray[np.float64], count: int) -> tuple[float, float]:
+    """Confidence that all gaps, in standard errors, are at least 0 (intersection-union test), and that one of that
+    number is not (Bonferroni)."""
     if np.isnan(gaps).any():
         return math.nan, math.nan
     met = student(float(gaps.min()), POINT_FREEDOM)
-    return met, max(0.0, 1 - len(gaps) * met)
+    return met, max(0.0, 1 - count * met)
 
 
 def _incomplete_beta(a: float, b: float, x: float) -> float:
