@@ -95,6 +95,12 @@ class Exported(Case):
             self.assertIn(words, section)
         self.assertNotIn("Recomputed", design.save(lit, self.folder / "a.html", found, images={}).read_text())
 
+    def test_files_of_another_design_are_refused(self):
+        lit = project(samples=16).requiring(at_least("mean", 1))
+        radiance.export(replace(lit, luminaires=lit.luminaires[:1]), self.folder)
+        with self.assertRaisesRegex(ValueError, "those of another design"):
+            radiance.recompute(lit, lit.check(), self.folder)
+
     def test_a_missing_program_is_named(self):
         lit = project(samples=16).requiring(at_least("mean", 1))
         radiance.export(lit, self.folder)

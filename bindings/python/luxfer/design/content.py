@@ -196,9 +196,9 @@ def _seconds(second: Sequence[Second]) -> list[Block]:
         Heading("Recomputed by Radiance", 2),
         Table(header, tuple(rows), (0.36, 0.22, 0.14, 0.12, 0.16), tones),
         Paragraph(
-            "Room, luminaires and points were written to files, from which Radiance (ies2rad, oconv, rtrace) computed the "
-            "illuminance with matte surfaces of equal reflectance. A requirement is confirmed if Radiance's number decides "
-            "it as this report does. Radiance's numbers are random, too.",
+            "Room, luminaires and points were written to files, from which Radiance (ies2rad, oconv, rtrace) computed "
+            "the illuminance with matte surfaces of equal reflectance. A requirement is confirmed if Radiance's number "
+            "decides it as this report does. Radiance's numbers are random, too.",
             "small",
         ),
     ]
@@ -277,7 +277,7 @@ def _leni(project: Project) -> list[Block]:
         Paragraph(total),
         Table(header, tuple(rows), (0.24, 0.1, 0.11, 0.11, 0.09, 0.09, 0.09, 0.17)),
         Paragraph(
-            "W F_C F_O (t_D F_D + t_N) / 1000 for each light scene; hours and factors are those of the design's author.",
+            "W F_C F_O (t_D F_D + t_N) / 1000 for each light scene; the design's author states the hours and factors.",
             "small",
         ),
     ]

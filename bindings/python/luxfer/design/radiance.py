@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..photometry import Distribution
+from . import fingerprint
 from .areas import horizontal
 from .check import Finding
 from .measure import Field, modelling
@@ -41,8 +42,9 @@ EFFICACY = 179.0
 #: Luminance of linear Rec.709 channels. [convention: BT.709]
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 #: Settings of rtrace: rays at each reflection, which end at random so that no light is lost, no interpolation between
-#: points, subdivided luminaires, and a shadow ray to each luminaire, however weak. By default Radiance guesses the light
-#: of luminaires that it takes for weak, which made the means of an office floor up to 3 % too small. [convention]
+#: points, subdivided luminaires, and a shadow ray to each luminaire, however weak. By default Radiance guesses the
+#: light of luminaires that it takes for weak, which makes the means of an office floor up to 3 % too small.
+#: [convention]
 RTRACE = tuple("-ab 30 -aa 0 -ad 512 -as 0 -lr -30 -lw 1e-3 -ds 0.05 -dj 0 -dc 1 -dt 0".split())
 #: Quantities of requirements that are recomputed.
 RECOMPUTED = ("mean", "uniformity", "minimum", "diversity", "modelling")
@@ -100,7 +102,8 @@ def export(project: Project, folder: str | os.PathLike[str]) -> Path:
             name = f"area{number}{kind}.pts"
             (place / name).write_text(_points(one))
             files[f"{area.name}{kind}"] = name
-    listed = {"room": "room.rad", "luminaires": lamps, "areas": files, "notes": notes}
+    made_of = fingerprint.digest(project.record())
+    listed = {"design": made_of, "room": "room.rad", "luminaires": lamps, "areas": files, "notes": notes}
     (place / INDEX).write_text(json.dumps(listed, indent=1) + "\n")
     return place
 
@@ -112,6 +115,10 @@ def recompute(
     folder; `settings` are those of rtrace."""
     place = Path(folder)
     listed = json.loads((place / INDEX).read_text())
+    if listed.get("design") != fingerprint.digest(project.record()):
+        raise ValueError(
+            f"the files in {place} are those of another design, or of this one before a change: export it anew"
+        )
     octree = _octree(place, listed)
     names = {a.name: a for a in project.areas}
     factor, known, out = checked.settings.maintenance, {}, []

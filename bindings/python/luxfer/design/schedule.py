@@ -19,8 +19,8 @@ if TYPE_CHECKING:
 def luminaires(project: Project) -> str:
     """One row for each luminaire: product with its reference (such as a GLDF file) and photometry, place, direction,
     dimmer, flux and power, and its dimmer in each light scene. Lengths are in the unit of the project, along the room,
-    across it and above the floor; angles are in degrees: of C = 0 in the plan from its horizontal axis clockwise, and of
-    the axis from straight down."""
+    across it and above the floor; angles are in degrees: of C = 0 in the plan from its horizontal axis clockwise, and
+    of the axis from straight down."""
     room, unit = project.room, project.unit
     states = {s.name: [lamp.dimmer for lamp in s.lamps(project.luminaires)] for s in project.scenes}
     head = [
