@@ -121,6 +121,8 @@ class Project:
             settings=self.chosen,
             wishes=wishes,
         )
+        if not self._limits_energy:
+            return found
         return replace(found, checked=with_energy(found.checked, self.solved(found)._leni()))
 
     def solved(self, solution: Solution) -> Project:
@@ -129,8 +131,12 @@ class Project:
 
     def _leni(self) -> float | None:
         """LENI, if a requirement limits it and light scenes have hours."""
-        used = self.energy() if any(r.quantity == "energy" for r in self.requirements) else None
+        used = self.energy() if self._limits_energy else None
         return used.leni if used else None
+
+    @property
+    def _limits_energy(self) -> bool:
+        return any(r.quantity == "energy" for r in self.requirements)
 
     def record(self) -> dict[str, Any]:
         """Everything that the numbers depend on (see fingerprint)."""
