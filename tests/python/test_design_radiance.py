@@ -1,6 +1,8 @@
 """A design recomputed by Radiance from the exported files; skipped without pyradiance."""
 
+import contextlib
 import importlib.util
+import io
 import json
 import math
 import unittest
@@ -94,6 +96,29 @@ class Exported(Case):
         for words in ("123 lx", "0.09", '<td class="good"><b>confirmed', '<td class="bad"><b>not confirmed'):
             self.assertIn(words, section)
         self.assertNotIn("Recomputed", design.save(lit, self.folder / "a.html", found, images={}).read_text())
+
+    def test_the_command_line_asks_radiance(self):
+        box().export(self.folder / "box.glb")
+        (self.folder / "lamp.ies").write_bytes(panel().photometry)
+        words = [str(self.folder / "box.glb"), "--place", "corridors", "--product", str(self.folder / "lamp.ies")]
+        words += ["--lamps", "2x1", "--maintenance", "0.8", "--task", "1.2,1,2.8,2,0", "--json"]
+        words += ["--radiance", str(self.folder / "out")]
+
+        def recomputed(lit, checked, folder):
+            return [radiance.Second(checked.findings[0], 0.5)]
+
+        for effect, code in ((recomputed, 6), (ImportError("no Radiance"), 5)):
+            out, wrong = io.StringIO(), io.StringIO()
+            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(wrong):
+                with mock.patch.object(radiance, "recompute", side_effect=effect):
+                    self.assertEqual(design.main(words), code, wrong.getvalue())
+            told = json.loads(out.getvalue())
+            if code == 6:
+                self.assertEqual(
+                    told["radiance"],
+                    [{"requirement": "mean of task 1 at least 100 lx", "value": 0.5, "confirmed": False}],
+                )
+        self.assertTrue((self.folder / "out" / "room.rad").exists())
 
     def test_files_of_another_design_are_refused(self):
         lit = project(samples=16).requiring(at_least("mean", 1))

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from ..context import Context
     from ..design import Checked, Product, Project, Solution
     from ..design.ifc import Building
+    from ..design.radiance import Second
     from ..design.standard import Place
     from ..scene import Scene
 
@@ -76,6 +77,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     check.add_argument(
         "--out", action="append", default=[], metavar="FILE", help=".html, .pdf, .json, .csv or .ifc; may be repeated"
     )
+    check.add_argument(
+        "--radiance", metavar="FOLDER", help="write Radiance's files into a folder, and have Radiance recompute them"
+    )
     options.add_common(parser)
 
 
@@ -96,11 +100,13 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     except (ValueError, KeyError) as error:  # an option that does not fit the room or the others
         raise usage(str(error.args[0] if error.args else error)) from None
     project = project.solved(solution) if solution else project
-    _save(project, checked, solution, outs, console)
+    second = _recomputed(project, checked, args)
+    _save(project, checked, solution, outs, console, second)
     warnings = [*files.scene_warnings(scene), *_unchecked(project, checked)]
     warnings += [doubt("design", "building", text, "look at the plan of the report") for text in _notes(building)]
     lines = [*([solution.explanation()] if solution else []), *map(str, checked.findings), checked.verdict()]
-    code = console.print_result(_result(project, checked, solution), lines, warnings)
+    lines += [f"By Radiance: {one}" for one in second]
+    code = console.print_result(_result(project, checked, solution, second), lines, warnings)
     return code if checked.passes else Exit.UNMET
 
 
@@ -224,8 +230,28 @@ def _results(project: Project, args: argparse.Namespace) -> tuple[Solution | Non
     return solution, solution.checked
 
 
+def _recomputed(project: Project, checked: Checked, args: argparse.Namespace) -> list[Second]:
+    """Has Radiance recompute the design, if it is asked for."""
+    from ..design import radiance
+
+    if args.radiance is None:
+        return []
+    try:
+        radiance.export(project, args.radiance)
+        return radiance.recompute(project, checked, args.radiance)
+    except OSError as error:
+        raise failed(f"--radiance: {args.radiance} cannot be written: {error.strerror}") from None
+    except (ImportError, RuntimeError) as error:
+        raise failed(f"--radiance: {error}") from None
+
+
 def _save(
-    project: Project, checked: Checked, solution: Solution | None, outs: list[Path], console: Console
+    project: Project,
+    checked: Checked,
+    solution: Solution | None,
+    outs: list[Path],
+    console: Console,
+    second: Sequence[Second] = (),
 ) -> None:
     """Writes the reports; the formats that can hold pictures get them."""
     from ..design import save
@@ -235,7 +261,7 @@ def _save(
     images = views(project.room, project.lit(), seed=project.chosen.seed) if drawn else {}
     for path in outs:
         try:
-            save(project, path, checked, solution, images=images)
+            save(project, path, checked, solution, images=images, second=second)
         except OSError as error:
             raise failed(f"{path} cannot be written: {error.strerror}") from None
         console.wrote(path)
@@ -249,7 +275,9 @@ def _unchecked(project: Project, checked: Checked) -> list[dict[str, Any]]:
     return [doubt("design", "unchecked", text, "check it by hand, or name --floor and --ceiling") for text in said]
 
 
-def _result(project: Project, checked: Checked, solution: Solution | None) -> dict[str, Any]:
+def _result(
+    project: Project, checked: Checked, solution: Solution | None, second: Sequence[Second] = ()
+) -> dict[str, Any]:
     """Returns the result that --json prints."""
     findings = []
     for f in checked.findings:
@@ -262,6 +290,9 @@ def _result(project: Project, checked: Checked, solution: Solution | None) -> di
         "explanation": solution.explanation() if solution else None,
         "dimmers": [lamp.dimmer for lamp in project.luminaires],
         "findings": findings,
+        "radiance": [
+            {"requirement": str(s.finding.requirement), "value": s.value, "confirmed": s.confirms} for s in second
+        ],
     }
 
 
