@@ -25,11 +25,12 @@ if HAS_IFC:
 
 
 def designed() -> design.Project:
-    """Two lamps of which one is dimmed, turned and coloured, and a desk."""
+    """A lamp that is dimmed, turned and coloured, one that is tilted, one that is off, and a desk."""
     lit = project(0.5, 2, 64)
     lamps = [
         replace(lit.luminaires[0], product=lopsided(), dimmer=0.25, c0=(0, 0, 1), colour=(1, 0.8, 0.5), group="wall"),
         replace(lit.luminaires[1], axis=(0.6, -0.8, 0), c0=(0.8, 0.6, 0)),
+        replace(lit.luminaires[1], dimmer=0, position=(2.0, 2.5, 1.5)),
     ]
     return replace(lit, luminaires=lamps, name="Office 1").requiring(at_least("mean", 30), at_most("density", 9))
 
@@ -188,6 +189,7 @@ class RoundTrip(Case):
             self.assertEqual((theirs.group, theirs.dimmer), (ours.group, ours.dimmer))
             self.assertEqual(theirs.product.photometry, ours.product.photometry)
             np.testing.assert_allclose((theirs.flux, theirs.watts), (ours.flux, ours.watts), rtol=1e-6)
+            self.assertAlmostEqual(theirs.product.flux, ours.product.flux, places=3)
             self.assertEqual(
                 (theirs.product.name, theirs.product.rendering), (ours.product.name, ours.product.rendering)
             )

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..scene import Scene
 from . import areas
 from .ifc_photometry import flux, ies, level
-from .ifc_write import OWN
+from .ifc_write import OWN, OWN_TYPE
 from .luminaires import Luminaire, Product
 from .rooms import Room
 
@@ -239,10 +239,11 @@ class _Model:
         size = self._size(fixture)
         product = self._product(context, name, kind, source, values, size)
         full = float(source.LuminousFlux) if source is not None and source.LuminousFlux else product.flux
-        own = self.lib.util.element.get_psets(fixture).get(OWN, {})
+        sets = self.lib.util.element.get_psets(fixture)
+        own = sets.get(OWN, {})
         dimmer = float(own.get("Dimmer", 1.0))
-        if dimmer != 1:  # the source states the flux as dimmed
-            full = full / dimmer if dimmer > 0 else float(values.get("LuminousFlux") or product.flux)
+        if OWN_TYPE in sets:  # a design of this package, whose sources state the flux as dimmed
+            full = float(sets[OWN_TYPE].get("LuminousFlux") or full)
         place = level(frame[:3, 3])
         place[1] = min(place[1], ceiling - BELOW)
         colour = (1.0, 1.0, 1.0)

@@ -29,8 +29,8 @@ ZONE_HEIGHT, BODY_HEIGHT = 0.01, 0.05
 FOLDER = "photometry"
 #: Name space of the identifiers, which follow from the names of the parts.
 SPACE = uuid.UUID("6f1d9c52-3a77-4c0e-9a4b-0d1f5a1c7e21")
-#: Property set of what only this package knows of a fixture.
-OWN = "Luxfer_Luminaire"
+#: Property sets of what only this package knows of a fixture, and of its type.
+OWN, OWN_TYPE = "Luxfer_Luminaire", "Luxfer_LightFixture"
 #: Types of values of results by their units.
 VALUES = {"lx": "IfcIlluminanceMeasure", "lm": "IfcLuminousFluxMeasure"}
 
@@ -48,7 +48,7 @@ def save(project: Project, path: str | os.PathLike[str], checked: Checked | None
         (folder / _file(product)).write_bytes(product.photometry)
     part = file.with_name(f".{file.name}.part")
     try:
-        part.write_text(model.file.to_string())
+        part.write_text(model.file.to_string(), encoding="utf-8")
         part.replace(file)
     finally:
         part.unlink(missing_ok=True)
@@ -269,7 +269,7 @@ class _Writer:
             values: dict[str, tuple[str, Any]] = {"LuminousFlux": ("IfcLuminousFluxMeasure", product.flux)}
             if product.rendering:
                 values["ColourRenderingIndex"] = ("IfcReal", product.rendering)
-            sets = [self._set(f"{key} luxfer", "Luxfer_LightFixture", values)]
+            sets = [self._set(f"{key} luxfer", OWN_TYPE, values)]
             if product.watts:
                 power = {"TotalWattage": ("IfcPowerMeasure", product.watts)}
                 sets.append(self._set(f"{key} common", "Pset_LightFixtureTypeCommon", power))
