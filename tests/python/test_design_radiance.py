@@ -1,5 +1,6 @@
 """A design recomputed by Radiance from the exported files; skipped without pyradiance."""
 
+import argparse
 import contextlib
 import importlib.util
 import io
@@ -13,6 +14,8 @@ from support import Case, context, np
 from test_design import HEIGHT, at_least, at_most, box, panel, project
 
 from luxfer import design
+from luxfer.cli.design import _recomputed
+from luxfer.cli.exits import Failure
 from luxfer.design import areas, radiance
 from luxfer.design.measure import measure
 from luxfer.design.reflectance import reflectance
@@ -107,17 +110,16 @@ class Exported(Case):
         def recomputed(lit, checked, folder):
             return [radiance.Second(checked.findings[0], 0.5)]
 
-        for effect, code in ((recomputed, 6), (ImportError("no Radiance"), 5)):
-            out, wrong = io.StringIO(), io.StringIO()
-            with contextlib.redirect_stdout(out), contextlib.redirect_stderr(wrong):
-                with mock.patch.object(radiance, "recompute", side_effect=effect):
-                    self.assertEqual(design.main(words), code, wrong.getvalue())
-            told = json.loads(out.getvalue())
-            if code == 6:
-                self.assertEqual(
-                    told["radiance"],
-                    [{"requirement": "mean of task 1 at least 100 lx", "value": 0.5, "confirmed": False}],
-                )
+        out = io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()):
+            with mock.patch.object(radiance, "recompute", side_effect=recomputed):
+                self.assertEqual(design.main(words), 6)
+        told = json.loads(out.getvalue())["radiance"]
+        self.assertEqual(told, [{"requirement": "mean of task 1 at least 100 lx", "value": 0.5, "confirmed": False}])
+        with mock.patch.object(radiance, "recompute", side_effect=ImportError("rtrace was not found")):
+            with self.assertRaisesRegex(Failure, "--radiance: rtrace was not found"):
+                words = argparse.Namespace(radiance=str(self.folder / "out"))
+                _recomputed(project(samples=16), project(samples=16).check(), words)
         self.assertTrue((self.folder / "out" / "room.rad").exists())
 
     def test_files_of_another_design_are_refused(self):
