@@ -27,6 +27,8 @@ install corpora DracoPy eulumdat eulumdat-py networkx numpy OpenEXR photompy Pil
 install usd usd-core numpy
 # The library that writes PDF reports of lighting designs.
 install report numpy 'reportlab>=4'
+# Building models, and Radiance, to exchange lighting designs with and to recompute them by.
+install exchange --no-compile numpy ifcopenshell pyradiance
 # Another runtime for ONNX files.
 install onnx onnxruntime numpy
 # The server of the studio.

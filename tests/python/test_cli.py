@@ -550,7 +550,7 @@ class Design(Cli):
         self.assertEqual((mean["at_least"], mean["outcome"]), (100, "fails"))
         self.assertTrue(mean["low"] <= mean["value"] <= mean["high"] < 100)
         self.assertTrue((self.folder / "a.html").read_text().rstrip().endswith("</html>"))
-        self.assertEqual(json.loads((self.folder / "a.json").read_text())["form"], 1)
+        self.assertEqual(json.loads((self.folder / "a.json").read_text())["form"], 2)
 
     def test_it_says_what_it_found(self):
         done = self.call(*self.words("--dimmer", "0.01"), code=6)

@@ -4,21 +4,26 @@ closest to a photo's look, and a report.
 A Project holds a room, luminaires, areas, observers and requirements. Lengths are metres unless a unit is given.
 """
 
-from . import areas, observers, standard
+from . import areas, emergency, ifc, observers, radiance, schedule, standard
 from .check import Checked, Finding, Settings, check
 from .command import main
+from .energy import Energy, Hours, Standby
 from .look import Distance, distance
 from .luminaires import Luminaire, Product, dimmed, from_transfer, layout, lit_scene
 from .project import Project
 from .report import save
 from .rooms import Room
+from .scenes import LightScene
 from .solve import Solution, Wishes, solve
-from .standard import Place, Requirement, place, requirements
+from .standard import Place, Requirement, place, places_from, requirements
 
 __all__ = [
     "Checked",
     "Distance",
+    "Energy",
     "Finding",
+    "Hours",
+    "LightScene",
     "Luminaire",
     "Place",
     "Product",
@@ -27,19 +32,25 @@ __all__ = [
     "Room",
     "Settings",
     "Solution",
+    "Standby",
     "Wishes",
     "areas",
     "check",
     "dimmed",
     "distance",
+    "emergency",
     "from_transfer",
+    "ifc",
     "layout",
     "lit_scene",
     "main",
     "observers",
     "place",
+    "places_from",
+    "radiance",
     "requirements",
     "save",
+    "schedule",
     "solve",
     "standard",
 ]

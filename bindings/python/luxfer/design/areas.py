@@ -111,7 +111,8 @@ class Area:
     name: str
     """Name by which requirements refer to it."""
     kind: str
-    """ "task", "surrounding", "background", "walls", "ceiling" or "cylindrical"."""
+    """ "task", "surrounding", "background", "walls", "ceiling", "cylindrical", or, of emergency light, "escape line",
+    "escape band" or "open area"."""
     patches: tuple[Patch, ...]
     """Its rectangles; of cylindrical illuminance the same points once for each plane."""
     height: float
@@ -211,6 +212,15 @@ def cylindrical(room: Room, name: str = "faces", height: float = SEATED, border:
     around = [np.cos(t) * room.along + np.sin(t) * room.across for t in angles]
     patches = tuple(Patch(base.origin, base.across, base.down, n, base.columns, base.rows, base.keep) for n in around)
     return Area(name, "cylindrical", patches, height, (_within(room, border),))
+
+
+def horizontal(area: Area) -> Area:
+    """The points of a cylindrical area with the plane that looks up, for modelling."""
+    if area.kind != "cylindrical":
+        raise ValueError(
+            f"modelling compares cylindrical with horizontal illuminance: {area.name!r} is no cylindrical area"
+        )
+    return replace(area, kind="horizontal", patches=(replace(area.patches[0], normal=np.array([0.0, 1.0, 0.0])),))
 
 
 def walls(
@@ -320,6 +330,31 @@ def _made(
         keeps.append(room.free(patch.points.reshape(-1, 3), clearance).reshape(rows, columns))
     outline = tuple((float(a), float(b), float(c), float(d)) for a, b, c, d in rectangles)
     return _filled(Area(name, kind, tuple(patches), float(height), outline), keeps)
+
+
+def fine(
+    name: str,
+    kind: str,
+    room: Room,
+    rectangle: tuple[float, float, float, float],
+    height: float,
+    steps: tuple[int, int],
+    clearance: float = 0,
+) -> Area:
+    """A horizontal rectangle of the plan with that number of points along and across the room, without those that are
+    not free up to the clearance above them."""
+    a0, b0, a1, b1 = rectangle
+    patch = Patch(
+        room.world([(a0, b0)], height)[0],
+        room.along * (a1 - a0),
+        room.across * (b1 - b0),
+        np.array([0.0, 1.0, 0.0]),
+        max(1, steps[0]),
+        max(1, steps[1]),
+        np.ones((max(1, steps[1]), max(1, steps[0])), bool),
+    )
+    keep = room.free(patch.points.reshape(-1, 3), clearance).reshape(patch.keep.shape)
+    return _filled(Area(name, kind, (patch,), float(height), (rectangle,)), [keep])
 
 
 def _filled(area: Area, keeps: Sequence[NDArray[np.bool_]]) -> Area:

@@ -10,23 +10,28 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from dataclasses import field as of
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .measure import Field, Rating, mean_with_bias, measure, paths_needed, rate, worst
+from .areas import horizontal
+from .measure import Field, Rating, mean_with_bias, measure, modelling, paths_needed, rate, worst
+from .standard import OF_AREAS
 
 if TYPE_CHECKING:
     from ..scene import Scene
     from .areas import Area
+    from .intervals import Estimate
     from .luminaires import Luminaire
     from .observers import Observers
     from .standard import Requirement
 
 #: Factor of the paths from one look to the next, and seeds from one look to the next. [convention]
 GROWTH, SEED_STEP = 4, 7919
+#: The horizontal illuminance of modelling has seeds this far from those of the cylindrical one. [convention]
+FLAT_SEED = 500_009
 #: Share of the looked-at illuminance that light left out of a glare rating may have. [rounding]
 UNRATED = 1e-3
 
@@ -92,13 +97,17 @@ class Finding:
         sign = 1 if self.requirement.is_minimum else -1
         return sign * gap / self.requirement.limit
 
+    def missed_by(self, before: str) -> str:
+        """The share of the limit by which it is missed, after some words; nothing if no number says so."""
+        return f"{before}{abs(self.reserve) * 100:.1f} %" if math.isfinite(self.reserve) else ""
+
     def __str__(self) -> str:
         r = self.requirement
         head = f"{r}: {self.value:.4g} {r.unit}".rstrip()
         if self.high > self.low:
             head += f" [{self.low:.4g}, {self.high:.4g}]"
         sure = percent(self.probability, exact=self.samples == 0)
-        tail = {"passes": f"passes with {sure}", "fails": f"fails by {abs(self.reserve) * 100:.1f} %"}
+        tail = {"passes": f"passes with {sure}", "fails": f"fails{self.missed_by(' by ')}"}
         return f"{head}, {tail.get(self.outcome, self.outcome)}" + (f" ({self.note})" if self.note else "")
 
 
@@ -135,8 +144,8 @@ class Checked:
         if failed:
             worst_one = min(failed, key=lambda f: f.reserve)
             return (
-                f"{len(failed)} of {len(self.findings)} requirements fail; {worst_one.requirement} is missed most, by "
-                f"{abs(worst_one.reserve) * 100:.1f} %"
+                f"{len(failed)} of {len(self.findings)} requirements fail; {worst_one.requirement} is missed most"
+                f"{worst_one.missed_by(', by ')}"
             )
         if open_:
             return f"{len(open_)} of {len(self.findings)} requirements are not decided: {open_[0]}"
@@ -152,13 +161,17 @@ def check(
     *,
     floor_area: float,
     settings: Settings,
+    energy: float | None = None,
 ) -> Checked:
-    """Checks the requirements. The scene is already lit by the luminaires, at their initial flux (see lit_scene)."""
+    """Checks the requirements. The scene is already lit by the luminaires, at their initial flux (see lit_scene);
+    `energy` is the LENI of the design, where a requirement limits it."""
     by_name = {a.name: a for a in areas}
     groups = {o.name: o for o in observers}
-    wanted_areas = _known(requirements, ("mean", "uniformity"), by_name, "area")
+    wanted_areas = _known(requirements, OF_AREAS, by_name, "area")
     wanted_groups = _known(requirements, ("glare",), groups, "group of observers")
+    modelled = {r.area: horizontal(by_name[r.area]) for r in requirements if r.quantity == "modelling"}
     fields: dict[str, Field] = {}
+    flat: dict[str, Field] = {}
     ratings: dict[str, Sequence[Rating]] = {}
     taken: dict[str, int] = {}
     for look in range(settings.looks):
@@ -166,10 +179,13 @@ def check(
         for name in wanted_areas:
             fields[name] = measure(scene, by_name[name], samples, seed).scaled(settings.maintenance)
             taken[name] = samples
+            if name in modelled:
+                flat[name] = measure(scene, modelled[name], samples, seed + FLAT_SEED).scaled(settings.maintenance)
         for name in wanted_groups:
             ratings[name] = rate(scene, groups[name], samples, seed)
             taken[name] = samples
-        findings = [_find(r, luminaires, fields, ratings, floor_area, settings, taken) for r in requirements]
+        found = _Found(fields, flat, ratings, taken)
+        findings = [_find(r, luminaires, found, floor_area, settings, energy) for r in requirements]
         open_names = {f.requirement.area for f in findings if f.outcome == "undecided"}
         wanted_areas = [n for n in wanted_areas if n in open_names]
         wanted_groups = [n for n in wanted_groups if n in open_names]
@@ -188,39 +204,102 @@ def _known(requirements: Sequence[Requirement], quantities: Sequence[str], names
     return wanted
 
 
+@dataclass(frozen=True)
+class _Found:
+    """What was measured, and by how many paths for each point."""
+
+    fields: Mapping[str, Field]
+    flat: Mapping[str, Field]
+    ratings: Mapping[str, Sequence[Rating]]
+    taken: Mapping[str, int]
+
+
 def _find(
     r: Requirement,
     luminaires: Sequence[Luminaire],
-    fields: Mapping[str, Field],
-    ratings: Mapping[str, Sequence[Rating]],
+    found: _Found,
     floor_area: float,
     settings: Settings,
-    taken: Mapping[str, int],
+    energy: float | None,
 ) -> Finding:
     """The finding of one requirement."""
+    if r.quantity == "energy":
+        return _energy(r, energy)
     if r.quantity in ("rendering", "density", "flux"):
         return _exact(r, luminaires, floor_area)
-    samples, level = taken[r.area], settings.look_confidence
+    samples, level = found.taken[r.area], settings.look_confidence
     if r.quantity == "glare":
-        return _glare(r, ratings[r.area], level, samples)
-    field = fields[r.area]
+        return _glare(r, found.ratings[r.area], level, samples)
+    field = found.fields[r.area]
     if r.quantity == "mean":
-        mean, bias = mean_with_bias(field)
-        low, high = mean.interval(2 * level - 1)
-        met = (
-            mean.probability_at_least(r.limit + bias)
-            if r.is_minimum
-            else 1 - mean.probability_at_least(r.limit - bias)
-        )
-        missed = 1 - (
-            mean.probability_at_least(r.limit - bias)
-            if r.is_minimum
-            else 1 - mean.probability_at_least(r.limit + bias)
-        )
-        outcome = _outcome(met, missed, level)
-        need = paths_needed(field, r.limit, level, samples) if outcome == "undecided" else 0
+        finding = _estimated(r, *mean_with_bias(field), level, samples)
+        need = paths_needed(field, r.limit, level, samples) if finding.outcome == "undecided" else 0
         note = f"{need:.2g} paths per point would decide" if 0 < need < math.inf else ""
-        return Finding(r, mean.value, low - bias, high + bias, met, outcome, samples, note)
+        return replace(finding, note=note)
+    if r.quantity == "modelling":
+        flat = found.flat[r.area]
+        lit = flat.values > 0
+        ratios = field.values[lit] / flat.values[lit]
+        note = f"single points {ratios.min():.2f} to {ratios.max():.2f}" if lit.any() else ""
+        return replace(_estimated(r, *modelling(field, flat), level, samples), note=note)
+    if r.quantity in ("minimum", "diversity"):
+        return _extreme(r, field, level, samples)
+    return _uniform(r, field, level, samples)
+
+
+def _estimated(r: Requirement, estimate: Estimate, bias: float, level: float, samples: int) -> Finding:
+    """The finding of a number with a standard error, and an absolute error that this leaves out."""
+    low, high = estimate.interval(2 * level - 1)
+    if r.is_minimum:
+        met = estimate.probability_at_least(r.limit + bias)
+        missed = 1 - estimate.probability_at_least(r.limit - bias)
+    else:
+        met = 1 - estimate.probability_at_least(r.limit - bias)
+        missed = estimate.probability_at_least(r.limit + bias)
+    return Finding(r, estimate.value, low - bias, high + bias, met, _outcome(met, missed, level), samples)
+
+
+def _extreme(r: Requirement, field: Field, level: float, samples: int) -> Finding:
+    """The finding of the smallest illuminance, or of the largest over the smallest."""
+    extremes, wide = field.extremes, 2 * level - 1
+    if r.quantity == "minimum":
+        # The planes of cylindrical illuminance have an error of their own.
+        met, missed = (
+            extremes.smallest_at_least(r.limit * f)[i] for i, f in ((0, 1 + field.bias), (1, 1 - field.bias))
+        )
+        value, (low, high) = extremes.smallest, extremes.interval_of_smallest(wide)
+        low, high = low * (1 - field.bias), high * (1 + field.bias)
+    else:
+        met, missed = (
+            extremes.diversity_at_most(r.limit * f)[i] for i, f in ((0, 1 - 2 * field.bias), (1, 1 + 2 * field.bias))
+        )
+        value, (low, high) = extremes.diversity, extremes.interval_of_diversity(wide)
+        low, high = low * (1 - 2 * field.bias), high * (1 + 2 * field.bias)
+    return Finding(r, value, low, high, met, _outcome(met, missed, level), samples)
+
+
+def _energy(r: Requirement, energy: float | None) -> Finding:
+    """The finding of LENI."""
+    if energy is None or math.isnan(energy):
+        note = "luminaires have no stated power" if energy is not None else "no light scene has hours of use"
+        return Finding(r, math.nan, math.nan, math.nan, 0, "unknown", 0, note)
+    return _decided(r, energy)
+
+
+def with_energy(checked: Checked, energy: float | None) -> Checked:
+    """The findings with another LENI."""
+    findings = (_energy(f.requirement, energy) if f.requirement.quantity == "energy" else f for f in checked.findings)
+    return replace(checked, findings=tuple(findings))
+
+
+def _decided(r: Requirement, value: float) -> Finding:
+    """The finding of an exact number."""
+    met = value >= r.limit * (1 - 1e-9) if r.is_minimum else value <= r.limit * (1 + 1e-9)  # [rounding]
+    return Finding(r, value, value, value, float(met), "passes" if met else "fails")
+
+
+def _uniform(r: Requirement, field: Field, level: float, samples: int) -> Finding:
+    """The finding of a uniformity."""
     uniformity = field.uniformity
     low, high = uniformity.interval(2 * level - 1)
     low, high = low * (1 - 2 * field.bias), high * (1 + 2 * field.bias)
@@ -268,8 +347,7 @@ def _exact(r: Requirement, luminaires: Sequence[Luminaire], floor_area: float) -
         value = (min if r.is_minimum else max)(values, default=math.nan)
     if note or math.isnan(value):
         return Finding(r, math.nan, math.nan, math.nan, 0, "unknown", 0, note or "there is no luminaire")
-    met = value >= r.limit * (1 - 1e-9) if r.is_minimum else value <= r.limit * (1 + 1e-9)  # [rounding]
-    return Finding(r, value, value, value, float(met), "passes" if met else "fails")
+    return _decided(r, value)
 
 
 def _outcome(met: float, missed: float, level: float) -> str:

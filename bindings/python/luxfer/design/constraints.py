@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from .standard import Requirement
 
 #: Quantities that dimmers change; the others are only checked.
-DIMMABLE = ("mean", "uniformity", "glare", "density", "flux")
+DIMMABLE = ("mean", "uniformity", "minimum", "glare", "density", "flux")
 
 
 @dataclass(frozen=True)
@@ -37,8 +37,10 @@ class Model:
 
     def value(self, r: Requirement, dimmers: NDArray[np.float64]) -> float:
         """The number that a requirement limits."""
-        if r.quantity in ("mean", "uniformity"):
+        if r.quantity in ("mean", "uniformity", "minimum"):
             lux = self.maintenance * self.responses[r.area].values(dimmers)
+            if r.quantity == "minimum":
+                return float(lux.min())
             mean = float(self.responses[r.area].area.weights @ lux)
             return mean if r.quantity == "mean" else float(lux.min()) / max(mean, 1e-300)
         if r.quantity == "glare":
@@ -61,6 +63,9 @@ class Model:
             row = sign * self.maintenance * (weights @ response.matrix)
             constant = -sign * goal + sign * self.maintenance * (weights @ response.other)
             return _linear(row[None] / r.limit, np.array([constant / r.limit]))
+        if r.quantity == "minimum":
+            response, share = self.responses[r.area], self.maintenance / r.limit
+            return _linear(-share * response.matrix, 1 + margin - share * response.other)
         if r.quantity == "uniformity":
             return self._uniformity(r, margin)
         if r.quantity == "glare":

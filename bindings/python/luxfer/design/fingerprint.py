@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, fields
 from typing import TYPE_CHECKING, Any
 
 from .. import _abi
@@ -14,12 +14,14 @@ if TYPE_CHECKING:
     from ..scene import Scene
     from .areas import Area
     from .check import Settings
+    from .energy import Standby
     from .luminaires import Luminaire
     from .observers import Observers
+    from .scenes import LightScene
     from .standard import Requirement
 
 #: Version of the record's form.
-FORM = 1
+FORM = 2
 
 
 def version() -> str:
@@ -34,6 +36,8 @@ def record(
     areas: Sequence[Area],
     observers: Sequence[Observers],
     settings: Settings,
+    scenes: Sequence[LightScene] = (),
+    standby: Standby | None = None,
 ) -> dict[str, Any]:
     """Everything that the numbers of a report depend on; the scene, the photometry and the grids by their SHA-256."""
     return {
@@ -58,8 +62,18 @@ def record(
         ],
         "requirements": [asdict(r) for r in requirements],
         "areas": {a.name: _digest(*(v for p in a.patches for v in (p.points, p.normal, p.keep))) for a in areas},
+        "scenes": [_state(s, luminaires) for s in scenes],
+        "standby": asdict(standby) if standby else None,
         "observers": {o.name: _digest(o.positions, o.directions) for o in observers},
     }
+
+
+def _state(scene: LightScene, luminaires: Sequence[Luminaire]) -> dict[str, Any]:
+    """What the numbers of a light scene depend on."""
+    dimmers = [lamp.dimmer for lamp in scene.lamps(luminaires)]
+    rest = {f.name: getattr(scene, f.name) for f in fields(scene) if f.name != "dimmers"}
+    kept = {"requirements": [asdict(r) for r in scene.requirements], "hours": scene.hours and asdict(scene.hours)}
+    return {**rest, "dimmers": dimmers, **kept}
 
 
 def digest(made_of: dict[str, Any]) -> str:

@@ -164,6 +164,96 @@ class Uniformity:
         return (0.0, 0.0) if self.mean <= 0 else (low, max(low, high))
 
 
+@dataclass(frozen=True)
+class Extremes:
+    """The smallest illuminance of independent points, and the largest over the smallest one (diversity).
+
+    As with the uniformity, no interval is centred on them. The smallest is at least a limit if every point is; the
+    diversity is at most a limit if every pair of points keeps to it. Each fails if any point or pair fails, whose error
+    counts once for each of them.
+    """
+
+    values: NDArray[np.float64]
+    """Illuminance of the points in lux."""
+    errors: NDArray[np.float64]
+    """Their standard errors."""
+
+    @property
+    def smallest(self) -> float:
+        """The smallest illuminance in lux."""
+        return float(self.values.min())
+
+    @property
+    def diversity(self) -> float:
+        """Largest over smallest illuminance; infinite if a point is dark."""
+        return float(self.values.max()) / self.smallest if self.smallest > 0 else math.inf
+
+    def smallest_at_least(self, limit: float) -> tuple[float, float]:
+        """Confidence that the smallest illuminance is at least the limit, and that it is below.
+
+        >>> Extremes(np.array([1.2, 2.0]), np.zeros(2)).smallest_at_least(1.0)
+        (1.0, 0.0)
+        """
+        return _all_of(_z(self.values - limit, self.errors), len(self.values))
+
+    def diversity_at_most(self, limit: float) -> tuple[float, float]:
+        """Confidence that the diversity is at most the limit, and that it is above.
+
+        >>> Extremes(np.array([1.0, 41.0]), np.zeros(2)).diversity_at_most(40)
+        (0.0, 1.0)
+        """
+        if self.smallest <= 0 and not self.errors.any():
+            return 0.0, 1.0
+        dark, bright = _front(self.values, self.errors), _front(-self.values, self.errors)
+        gaps = limit * self.values[dark, None] - self.values[None, bright]
+        spreads = np.hypot(limit * self.errors[dark, None], self.errors[None, bright])
+        return _all_of(_z(gaps, spreads).reshape(-1), len(self.values) ** 2)
+
+    def interval_of_smallest(self, confidence: float = 0.95) -> tuple[float, float]:
+        """The two-sided interval of the smallest illuminance."""
+        sure, top = (1 + confidence) / 2, float((self.values + 10 * self.errors).max())
+        low = bisect(lambda v: self.smallest_at_least(v)[0] < sure, 0.0, top)
+        high = bisect(lambda v: self.smallest_at_least(v)[1] >= sure, 0.0, top)
+        return low, max(low, high)
+
+    def interval_of_diversity(self, confidence: float = 0.95) -> tuple[float, float]:
+        """The two-sided interval of the diversity; without upper end if a point may be dark."""
+        sure = (1 + confidence) / 2
+        if not self.diversity < math.inf:
+            return self.diversity, self.diversity
+        # The inverse, smallest over largest, lies between 0 and 1.
+        high = bisect(lambda u: self.diversity_at_most(1 / u)[0] < sure, 0.0, 1.0)
+        low = bisect(lambda u: self.diversity_at_most(1 / u)[1] >= sure, 0.0, 1.0)
+        return 1 / max(low, high), 1 / high if high > 1e-9 else math.inf  # [rounding]
+
+
+def _z(gaps: NDArray[np.float64], spreads: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Gaps in standard errors; infinite for exact numbers."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(spreads == 0, np.where(gaps >= 0, np.inf, -np.inf), gaps / spreads)
+
+
+def _front(values: NDArray[np.float64], errors: NDArray[np.float64]) -> NDArray[np.intp]:
+    """The points of which one has the smallest gap in standard errors to any limit: those with a larger or a smaller
+    error than all points of smaller value. All points if any is not known."""
+    if np.isnan(values).any() or np.isnan(errors).any():
+        return np.arange(len(values))
+    order = np.lexsort((errors, values))
+    sorted_ = errors[order]
+    above = np.concatenate([[-np.inf], np.maximum.accumulate(sorted_)[:-1]])
+    below = np.concatenate([[np.inf], np.minimum.accumulate(sorted_)[:-1]])
+    return order[(sorted_ > above) | (sorted_ < below)]
+
+
+def _all_of(gaps: NDArray[np.float64], count: int) -> tuple[float, float]:
+    """Confidence that all gaps, in standard errors, are at least 0 (intersection-union test), and that one of that
+    number is not (Bonferroni)."""
+    if np.isnan(gaps).any():
+        return math.nan, math.nan
+    met = student(float(gaps.min()), POINT_FREEDOM)
+    return met, max(0.0, 1 - count * met)
+
+
 def _incomplete_beta(a: float, b: float, x: float) -> float:
     """Regularised incomplete beta function by its continued fraction (Lentz's method)."""
     if x <= 0 or x >= 1:

@@ -43,6 +43,8 @@ class Product:
     """Colour rendering index Ra; 0 if unknown."""
     size: tuple[float, float, float] = (0, 0, 0)
     """Luminous opening in metres, as in DistributionReport."""
+    reference: str = ""
+    """Where the product is described, such as its GLDF file or catalogue number; schedules and reports print it."""
 
     @classmethod
     def load(

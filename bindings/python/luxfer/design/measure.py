@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..illuminance import Illuminance
 from .areas import PLANES, PLANES_ERROR
-from .intervals import Estimate, Uniformity, mean_of, quantile
+from .intervals import Estimate, Extremes, Uniformity, mean_of, quantile
 
 if TYPE_CHECKING:
     from ..scene import Scene
@@ -40,6 +40,11 @@ class Field:
     def mean(self) -> Estimate:
         """Mean illuminance of the area, in which each point counts by the part that it stands for."""
         return mean_of(self.values, self.errors, self.area.weights)
+
+    @property
+    def extremes(self) -> Extremes:
+        """Smallest illuminance, and largest over smallest."""
+        return Extremes(self.values, self.errors)
 
     @property
     def uniformity(self) -> Uniformity:
@@ -152,6 +157,17 @@ def mean_with_bias(field: Field) -> tuple[Estimate, float]:
     """The mean, and the absolute error that its standard error leaves out."""
     mean = field.mean
     return mean, mean.value * field.bias
+
+
+def modelling(cylindrical: Field, horizontal: Field) -> tuple[Estimate, float]:
+    """Mean cylindrical over mean horizontal illuminance of the same points by independent paths, and the absolute error
+    that its standard error leaves out."""
+    above, below = cylindrical.mean, horizontal.mean
+    if below.value <= 0:
+        return Estimate(math.nan, math.nan), 0.0
+    ratio = above.value / below.value
+    relative = math.hypot(above.error / max(above.value, 1e-300), below.error / below.value)
+    return Estimate(ratio, ratio * relative, min(above.freedom, below.freedom)), ratio * cylindrical.bias
 
 
 def paths_needed(field: Field, limit: float, confidence: float, samples: int) -> float:

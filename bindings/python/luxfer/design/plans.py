@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .drawing import Drawing, Point, colour_of, ink_on
 from .isolux import levels, lines
-from .units import shown
+from .units import lux, shown
 
 if TYPE_CHECKING:
     from .areas import Area
@@ -25,6 +25,15 @@ WIDTH, HEIGHT, FIELD_HEIGHT, BORDER, TOP = 480.0, 300.0, 245.0, 42.0, 16.0
 READABLE = 17.0
 #: Colours of lines: room, task, band, observers, lamps. [convention]
 INK, TASK, BAND, EYE, LAMP = "#222222", "#b00020", "#b06000", "#00508f", "#c08a00"
+#: Areas that the plan shows, with the colours of their outlines: those of emergency light are green. [convention]
+OUTLINES = {
+    "task": TASK,
+    "surrounding": BAND,
+    "background": "#888888",
+    "escape line": "#007a3d",
+    "escape band": "#007a3d",
+    "open area": "#007a3d",
+}
 
 
 class Scale:
@@ -54,15 +63,21 @@ def plan(
     for number, lamp in enumerate(luminaires, 1):
         _lamp(scale, room, lamp, number)
     for area in areas:
-        if area.kind not in ("task", "surrounding", "background"):
+        if area.kind not in OUTLINES:
             continue
-        colour = {"task": TASK, "surrounding": BAND}.get(area.kind, "#888888")
+        colour, low = OUTLINES[area.kind], area.kind in ("background", "open area")
         for a0, b0, a1, b1 in _hull(area):
             corners = [scale.at(p) for p in ((a0, b0), (a1, b0), (a1, b1), (a0, b1), (a0, b0))]
             drawing.line(corners, colour, 1.0 if area.kind == "task" else 0.7, area.kind != "task")
+            if area.kind == "escape line":  # its band stands around it
+                continue
             # The name stands below the upper edge, except of the background, where it stands above the lower one.
-            x, y = scale.at((a0, b1)) if area.kind == "background" else scale.at((a0, b0))
-            drawing.text((x + 3, y - 3 if area.kind == "background" else y + 8), area.name, 6.5, "start", colour)
+            x, y = scale.at((a0, b1)) if low else scale.at((a0, b0))
+            # That of an open area stands at the other end, because it may coincide with the background.
+            if area.kind == "open area":
+                drawing.text((scale.at((a1, b1))[0] - 3, y - 3), area.name, 6.5, "end", colour)
+            else:
+                drawing.text((x + 3, y - 3 if low else y + 8), area.name, 6.5, "start", colour)
     for group in observers:
         for place, view in zip(room.plan(group.positions), group.directions):
             _eye(scale, place, np.array([view @ room.along, view @ room.across]))
@@ -138,7 +153,7 @@ def _cells(
         xs, ys = [p[0] for p in corners], [p[1] for p in corners]
         if max(xs) - min(xs) >= READABLE and max(ys) - min(ys) >= 8:
             middle = (sum(xs) / 4, sum(ys) / 4 + 2.2)
-            drawing.text(middle, f"{values[place]:.0f}", 6.5, "middle", ink_on(share(values[place])))
+            drawing.text(middle, lux(values[place]), 6.5, "middle", ink_on(share(values[place])))
 
 
 def _bar(drawing: Drawing, low: float, high: float) -> None:
@@ -158,7 +173,7 @@ def _bar(drawing: Drawing, low: float, high: float) -> None:
         used.append(y)
         if not end:
             drawing.line([(x, y), (x + 10, y)], "#000000", 0.7)
-        drawing.text((x + 13, y + 2.3), f"{value:.0f}", 6.5, "start")
+        drawing.text((x + 13, y + 2.3), lux(value), 6.5, "start")
 
 
 def _walls(scale: Scale, room: Room, unit: str) -> None:

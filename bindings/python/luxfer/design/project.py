@@ -7,12 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..scene import Scene
-from . import fingerprint
+from . import emergency, fingerprint, scenes
+from . import energy as energies
 from .areas import Area
-from .check import Checked, Settings, check
+from .check import Checked, Settings, check, with_energy
 from .luminaires import Luminaire, lit_scene
 from .observers import Observers
 from .rooms import Room
+from .scenes import LightScene
 from .solve import Solution, Wishes, solve
 from .standard import Place, Requirement, requirements
 
@@ -42,6 +44,10 @@ class Project:
     """Title of the report."""
     author: str = ""
     """Name beside the signature."""
+    scenes: Sequence[LightScene] = ()
+    """Named states of the dimmers."""
+    standby: energies.Standby = energies.Standby()
+    """Power beside the light, for the energy of the design."""
 
     def requiring(self, *more: Requirement) -> Project:
         """The project with further requirements."""
@@ -71,6 +77,25 @@ class Project:
         """The scene with the luminaires at their initial flux."""
         return lit_scene(self.room.scene, self.luminaires)
 
+    def in_scene(self, name: str) -> Project:
+        """The design in one of its light scenes, with the requirements of this state alone."""
+        state = scenes.find(self.scenes, name)
+        settings = self.chosen
+        if state.maintenance is not None:
+            settings = replace(settings, maintenance=state.maintenance)
+        room = emergency.dark(self.room) if state.direct else self.room
+        lamps = state.lamps(self.luminaires)
+        limits = state.requirements
+        return replace(self, room=room, luminaires=lamps, requirements=limits, settings=settings, scenes=())
+
+    def check_scenes(self) -> dict[str, Checked]:
+        """Checks each light scene that has requirements, by its name."""
+        return {s.name: self.in_scene(s.name).check() for s in self.scenes if s.requirements}
+
+    def energy(self) -> energies.Energy | None:
+        """The energy of a year by the hours of the light scenes; None if none has hours."""
+        return energies.energy(self.luminaires, self.scenes, self.room.floor_area, self.standby)
+
     def check(self) -> Checked:
         """Checks all requirements."""
         return check(
@@ -81,11 +106,12 @@ class Project:
             self.observers,
             floor_area=self.room.floor_area,
             settings=self.chosen,
+            energy=self._leni(),
         )
 
     def solve(self, wishes: Wishes = Wishes()) -> Solution:
         """Finds the dimmers closest to the present ones that meet the requirements."""
-        return solve(
+        found = solve(
             self.room.scene,
             self.luminaires,
             self.requirements,
@@ -95,13 +121,32 @@ class Project:
             settings=self.chosen,
             wishes=wishes,
         )
+        if not self._limits_energy:
+            return found
+        return replace(found, checked=with_energy(found.checked, self.solved(found)._leni()))
 
     def solved(self, solution: Solution) -> Project:
         """The project with the luminaires of a solution."""
         return replace(self, luminaires=solution.luminaires)
 
+    def _leni(self) -> float | None:
+        """LENI, if a requirement limits it and light scenes have hours."""
+        used = self.energy() if self._limits_energy else None
+        return used.leni if used else None
+
+    @property
+    def _limits_energy(self) -> bool:
+        return any(r.quantity == "energy" for r in self.requirements)
+
     def record(self) -> dict[str, Any]:
         """Everything that the numbers depend on (see fingerprint)."""
         return fingerprint.record(
-            self.room.scene, self.luminaires, self.requirements, self.areas, self.observers, self.chosen
+            self.room.scene,
+            self.luminaires,
+            self.requirements,
+            self.areas,
+            self.observers,
+            self.chosen,
+            self.scenes,
+            self.standby,
         )

@@ -24,6 +24,7 @@ from .explain import Relaxation, joined, of_groups, relaxations
 from .look import Distance, distance, objective
 from .luminaires import Luminaire, dimmed, lit_scene
 from .responses import respond_all, respond_glare
+from .standard import OF_AREAS
 
 if TYPE_CHECKING:
     from ..scene import Scene
@@ -171,7 +172,7 @@ def measured_model(
     """The linear responses of what the requirements ask for."""
     if not luminaires:
         raise ValueError("a design without luminaires cannot be solved for")
-    wanted = {r.area for r in requirements if r.quantity in ("mean", "uniformity")}
+    wanted = {r.area for r in requirements if r.quantity in OF_AREAS and r.quantity in DIMMABLE}
     rated = {r.area for r in requirements if r.quantity == "glare"}
     missing = (wanted - {a.name for a in areas}) | (rated - {o.name for o in observers})
     if missing:

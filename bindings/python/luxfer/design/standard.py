@@ -8,7 +8,13 @@ clauses differ between editions.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import csv
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
 
 STANDARD = "EN 12464-1:2021"
 
@@ -22,15 +28,26 @@ BACKGROUND_SHARE = 1 / 3
 #: Smallest uniformity of the mean cylindrical illuminance. [convention: EN 12464-1]
 CYLINDRICAL_UNIFORMITY = 0.1
 
+#: Fields of a place that may be missing: without them nothing is required.
+OPTIONAL = ("cylindrical", "walls", "ceiling", "modified")
+
 #: Quantities that a requirement may limit, with their units.
 QUANTITIES = {
     "mean": "lx",
     "uniformity": "",
+    "minimum": "lx",
+    "diversity": "",
+    "modelling": "",
     "glare": "",
     "rendering": "",
     "density": "W/m²",
     "flux": "lm",
+    "energy": "kWh/(m² a)",
 }
+#: Quantities that follow from the light of an area.
+OF_AREAS = ("mean", "uniformity", "minimum", "diversity", "modelling")
+#: Quantities that a requirement limits on one side only.
+ONE_SIDED = {"glare": "at_most", "minimum": "at_least", "diversity": "at_most"}
 
 
 @dataclass(frozen=True)
@@ -41,12 +58,14 @@ class Requirement:
     500
     >>> Requirement("lux", "desk", at_least=500)
     Traceback (most recent call last):
-    ValueError: 'lux' is no quantity: there are mean, uniformity, glare, rendering, density, flux
+    ValueError: 'lux' is no quantity: there are mean, uniformity, minimum, diversity, modelling, glare, ...
     """
 
     quantity: str
-    """What is limited: "mean" illuminance in lux, "uniformity" (smallest over mean illuminance), "glare" (UGR),
-    "rendering" (Ra of each luminaire), "density" (W/m² of the floor) or "flux" (lumens of each luminaire)."""
+    """What is limited: "mean" illuminance in lux, "uniformity" (smallest over mean illuminance), "minimum"
+    (illuminance of the darkest point in lux), "diversity" (largest over smallest illuminance), "modelling" (mean
+    cylindrical over mean horizontal illuminance of the same points), "glare" (UGR), "rendering" (Ra of each luminaire),
+    "density" (W/m² of the floor), "flux" (lumens of each luminaire) or "energy" (LENI in kWh/m² of a year)."""
     area: str = ""
     """Name of the area or group of observers; empty for limits of the whole design."""
     at_least: float | None = None
@@ -63,8 +82,10 @@ class Requirement:
             raise ValueError(f"the requirement of {self.quantity} needs either at_least or at_most")
         if not 0 < self.limit < float("inf"):
             raise ValueError(f"the limit of {self.quantity} is {self.limit}; it must be finite and above 0")
-        if self.quantity == "glare" and self.is_minimum:
-            raise ValueError("a glare rating has no lower limit: use at_most")
+        side = ONE_SIDED.get(self.quantity)
+        if side and self.is_minimum != (side == "at_least"):
+            sides = {"at_least": "no upper limit", "at_most": "no lower limit"}
+            raise ValueError(f"a requirement of {self.quantity} has {sides[side]}: use {side}")
 
     @property
     def limit(self) -> float:
@@ -128,9 +149,7 @@ _LIBRARIES = "table of libraries"
 #: The rows that this package knows, all as Glamox publishes them of the edition of 2021. The row of bookshelves is
 #: not among them: its 200 lx are vertical illuminance on the shelves, and task areas here are horizontal.
 PLACES = (
-    Place(
-        "34.2", "office: writing, typing, reading, data processing", _OFFICES, 500, 0.6, 19, 80, 150, 150, 100, 1000
-    ),
+    Place("34.2", "office: writing, typing, reading, data processing", _OFFICES, 500, 0.6, 19, 80, 150, 150, 100, 1000),
     Place("", "school: entrance halls", _EDUCATION, 200, 0.4, 22, 80, 75, 75, 50, 300),
     Place("", "school: circulation areas, corridors", _EDUCATION, 100, 0.4, 25, 80, 50, 50, 30, 150),
     Place("", "school: stairs", _EDUCATION, 150, 0.4, 25, 80, 50, 50, 30, 200),
@@ -138,8 +157,43 @@ PLACES = (
 )
 
 
-def place(name: str) -> Place:
-    """The row with a number or a part of a name.
+def places_from(path: str | os.PathLike[str]) -> tuple[Place, ...]:
+    """Rows of a CSV file of your own, for places that this package does not know: its columns have the names of the
+    fields of Place, in any order. `name`, `table`, `illuminance`, `uniformity`, `glare` and `rendering` must be there;
+    the others are 0 or empty if they are not: then nothing is required."""
+    file = Path(path)
+    with file.open(newline="", encoding="utf-8-sig") as opened:
+        rows = list(csv.DictReader(opened))
+    known = {f.name: f.default for f in fields(Place)}
+    needed = [n for n in known if n not in ("number", *OPTIONAL)]
+    found = set(rows[0]) if rows else set()
+    unknown, missing = found - set(known), [n for n in needed if n not in found]
+    if unknown or missing:
+        listed = ", ".join(sorted(map(str, unknown)) or missing)
+        what = "columns that are no fields of a place" if unknown else "no column"
+        raise ValueError(f"{file.name} has {what}: {listed}; there are {', '.join(known)}")
+    out = []
+    for number, row in enumerate(rows, 2):
+        values: dict[str, Any] = {n: (row.get(n) or "").strip() for n in known}
+        for name in [n for n in known if n not in ("number", "name", "table")]:
+            try:
+                values[name] = float(values[name] or "0")
+            except ValueError:
+                raise ValueError(
+                    f"line {number} of {file.name}: {name} is {values[name]!r}, which is no number"
+                ) from None
+            if not 0 <= values[name] < math.inf or (values[name] == 0 and name in needed):
+                raise ValueError(
+                    f"line {number} of {file.name}: {name} is {values[name]:g}; it must be finite and above 0"
+                )
+        if not values["name"]:
+            raise ValueError(f"line {number} of {file.name} has no name")
+        out.append(Place(**values))
+    return tuple(out)
+
+
+def place(name: str, among: Sequence[Place] = PLACES) -> Place:
+    """The row with a number or a part of a name, of the rows that this package knows or of others (see places_from).
 
     >>> place("34.2").illuminance, place("writing").glare
     (500, 19)
@@ -147,9 +201,9 @@ def place(name: str) -> Place:
     Traceback (most recent call last):
     KeyError: "no place is called 'operating theatre'; give requirements of your own, or one of: 34.2 ...
     """
-    found = [p for p in PLACES if p.number == name] or [p for p in PLACES if name.lower() in p.name]
+    found = [p for p in among if p.number == name] or [p for p in among if name.lower() in p.name.lower()]
     if len(found) != 1:
-        listed = "; ".join(f"{p.number} {p.name}".strip() for p in (found or PLACES))
+        listed = "; ".join(f"{p.number} {p.name}".strip() for p in (found or among))
         count = "several places are" if found else "no place is"
         raise KeyError(f"{count} called {name!r}; give requirements of your own, or one of: {listed}")
     return found[0]

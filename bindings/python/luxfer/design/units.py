@@ -39,3 +39,12 @@ def shown(length: float, unit: str) -> str:
     ('1.234', '1234', '1.00')
     """
     return f"{length / factor(unit):.{ {'m': 3, 'mm': 0, 'inch': 2}[unit] }f}"
+
+
+def lux(value: float) -> str:
+    """An illuminance as drawings and tables print it: with decimals where it is small, as emergency light is.
+
+    >>> lux(512.3), lux(15.26), lux(0.517)
+    ('512', '15.3', '0.52')
+    """
+    return f"{value:.{2 if abs(value) < 2 else 1 if abs(value) < 20 else 0}f}"
