@@ -102,8 +102,13 @@ def replace(files: dict[str, str], constant: str, measured: bool = True) -> None
             replace(files, f"{user}:{other}", measured=False)
 
 
+def code_of(content: bytes) -> list[bytes]:
+    """The lines of a file without those that are comments of Rust."""
+    return [line for line in content.split(b"\n") if not line.lstrip().startswith(b"//")]
+
+
 def write_copy(constants: list[str]) -> None:
-    """Writes the copy of the tree with its constants replaced. Files that stay equal keep their times."""
+    """Writes the copy of the tree with its constants replaced. Files whose code stays equal keep their times."""
     listed = subprocess.check_output(["git", "ls-files"], cwd=ROOT, text=True).splitlines()
     kept = ("src/", "benches/", "tests/strokes/", "tests/truth/", "Cargo.", "build.rs")
     binary, files = {}, {}
@@ -122,7 +127,7 @@ def write_copy(constants: list[str]) -> None:
     files["Cargo.toml"] += "\n[profile.release.package.luxfer]\ndebug = false\n"
     for path, content in (binary | {path: text.encode() for path, text in files.items()}).items():
         file = COPY / path
-        if not file.exists() or file.read_bytes() != content:
+        if not file.exists() or code_of(file.read_bytes()) != code_of(content):
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(content)
 
