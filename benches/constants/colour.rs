@@ -60,7 +60,7 @@ fn lit_plane(seed: u64) -> Image {
     image.expect("a plane")
 }
 
-/// A photo in which `white` is clipped: eight bits per channel in display encoding, with noise.
+/// A photo in which `white` is clipped, with noise.
 fn photograph(image: &Image, white: f32, seed: u64) -> Image {
     let mut photo = image.clone();
     for (i, v) in photo.data.iter_mut().enumerate() {

@@ -23,57 +23,66 @@ fn block(low: Vec3, high: Vec3) -> Mesh {
     }
 }
 
-/// Prints the share of the buildings in which the ceiling's lower side is chosen. A ceiling is a slab with a beam. Half
-/// of the buildings have a storey above it, as large and as empty as the room below. Some have no camera in the room.
+/// Joins a mesh to another one.
+fn join(mesh: &mut Mesh, other: &Mesh) {
+    let first = mesh.positions.len() as u32;
+    mesh.positions.extend(&other.positions);
+    mesh.triangles.extend(other.triangles.iter().map(|t| t.map(|v| v + first)));
+}
+
+/// A building whose ceiling is a slab with a beam, and the height of the slab's lower side. Half of the buildings have
+/// a storey above the ceiling, as empty as the room below. A third has no camera, and a third has two in the room and
+/// one outside. In every fourth building, the ceiling's object has a panel outside, which is larger than the ceiling.
+fn building(seed: u64) -> (Scene, f32) {
+    let mut rng = Rng::new(61, &[seed]);
+    let mut between = |low: f32, high: f32| low + (high - low) * rng.next_f32();
+    let (w, d) = (between(3.0, 9.0), between(3.0, 9.0));
+    let (h, above) = (between(2.2, 3.5), between(2.2, 4.5));
+    let (thick, beam) = (between(0.1, 0.4), between(0.15, 0.5));
+    let has_storey = seed % 2 == 1;
+    let top = h + thick + if has_storey { above } else { 0.0 };
+    let mut ceiling = block(Vec3::new(0.0, h, 0.0), Vec3::new(w, h + thick, d));
+    ceiling.name = "Ceiling".into();
+    join(&mut ceiling, &block(Vec3::new(0.3 * w, h - beam, 0.0), Vec3::new(0.3 * w + beam, h, d)));
+    if seed % 4 == 0 {
+        let side = (w * d / between(0.02, 0.5)).sqrt();
+        let corner = Vec3::new(-50.0, -side, -3.0);
+        join(&mut ceiling, &Mesh::parallelogram(corner, Vec3::X * side, Vec3::Y * side, 0));
+    }
+    // The floor, the walls and the roof.
+    let mut meshes = vec![
+        ceiling,
+        block(Vec3::new(0.0, -0.2, 0.0), Vec3::new(w, 0.0, d)),
+        block(Vec3::new(-0.2, 0.0, 0.0), Vec3::new(0.0, top, d)),
+        block(Vec3::new(w, 0.0, 0.0), Vec3::new(w + 0.2, top, d)),
+        block(Vec3::new(0.0, 0.0, -0.2), Vec3::new(w, top, 0.0)),
+        block(Vec3::new(0.0, 0.0, d), Vec3::new(w, top, d + 0.2)),
+    ];
+    if has_storey {
+        meshes.push(block(Vec3::new(0.0, top, 0.0), Vec3::new(w, top + 0.2, d)));
+    }
+    let inside = Camera::look_at(Vec3::new(0.5 * w, 1.5, 0.8 * d), Vec3::new(0.5 * w, 1.5, 0.0), 1.0);
+    let outside = Camera::look_at(Vec3::new(-8.0, 12.0, -8.0), Vec3::new(w, h, d), 1.0);
+    let cameras = match seed / 2 % 3 {
+        0 => vec![inside],
+        1 => vec![inside.clone(), inside, outside],
+        _ => vec![],
+    };
+    (Scene { meshes, materials: vec![Material::default()], cameras, ..Scene::default() }, h)
+}
+
+/// Prints the share of the buildings in which the ceiling's lower side is chosen: of all, and of those with cameras.
 pub fn surface() {
-    let [mut right, mut seen, mut count_seen] = [0, 0, 0];
+    let [mut right, mut seen, mut count_seen] = [0; 3];
     for seed in 0..BUILDINGS {
-        let mut rng = Rng::new(61, &[seed]);
-        let mut between = |low: f32, high: f32| low + (high - low) * rng.next_f32();
-        let (w, d) = (between(3.0, 9.0), between(3.0, 9.0));
-        let (h, above) = (between(2.2, 3.5), between(2.2, 4.5));
-        let thick = between(0.1, 0.4);
-        let storeys = 1 + seed % 2;
-        let top = h + thick + if storeys == 2 { above } else { 0.0 };
-        let mut meshes = vec![block(Vec3::new(0.0, h, 0.0), Vec3::new(w, h + thick, d))];
-        meshes[0].name = "Ceiling".into();
-        let beam = between(0.15, 0.5);
-        let below = block(Vec3::new(0.3 * w, h - beam, 0.0), Vec3::new(0.3 * w + beam, h, d));
-        let first = meshes[0].positions.len() as u32;
-        meshes[0].positions.extend(below.positions);
-        meshes[0].triangles.extend(below.triangles.iter().map(|t| t.map(|v| v + first)));
-        // In every fourth building, the ceiling's object has a panel outside, which is larger than the ceiling.
-        if seed % 4 == 0 {
-            let side = (w * d / between(0.02, 0.5)).sqrt();
-            let panel = Mesh::parallelogram(Vec3::new(-50.0, -side, -3.0), Vec3::X * side, Vec3::Y * side, 0);
-            let first = meshes[0].positions.len() as u32;
-            meshes[0].positions.extend(panel.positions);
-            meshes[0].triangles.extend(panel.triangles.iter().map(|t| t.map(|v| v + first)));
-        }
-        // The floor, the roof, and walls.
-        meshes.push(block(Vec3::new(0.0, -0.2, 0.0), Vec3::new(w, 0.0, d)));
-        if storeys == 2 {
-            meshes.push(block(Vec3::new(0.0, top, 0.0), Vec3::new(w, top + 0.2, d)));
-        }
-        meshes.push(block(Vec3::new(-0.2, 0.0, 0.0), Vec3::new(0.0, top, d)));
-        meshes.push(block(Vec3::new(w, 0.0, 0.0), Vec3::new(w + 0.2, top, d)));
-        meshes.push(block(Vec3::new(0.0, 0.0, -0.2), Vec3::new(w, top, 0.0)));
-        meshes.push(block(Vec3::new(0.0, 0.0, d), Vec3::new(w, top, d + 0.2)));
-        // Cameras in the room, and one that shows the building from outside.
-        let inside = Camera::look_at(Vec3::new(0.5 * w, 1.5, 0.8 * d), Vec3::new(0.5 * w, 1.5, 0.0), 1.0);
-        let outside = Camera::look_at(Vec3::new(-8.0, 12.0, -8.0), Vec3::new(w, h, d), 1.0);
-        let cameras = match seed / 2 % 3 {
-            0 => vec![inside],
-            1 => vec![inside.clone(), inside, outside],
-            _ => vec![],
-        };
-        let has_camera = !cameras.is_empty();
-        let scene = Scene { meshes, materials: vec![Material::default()], cameras, ..Scene::default() };
+        let (scene, height) = building(seed);
         let found = surface::find(&scene, "Ceiling").expect("a ceiling");
-        let is_right = found.normal.y < -0.99 && (found.origin.y - h).abs() < 0.01;
-        right += u64::from(is_right);
-        count_seen += u64::from(has_camera);
-        seen += u64::from(is_right && has_camera);
+        let is_right = u64::from(found.normal.y < -0.99 && (found.origin.y - height).abs() < 0.01);
+        right += is_right;
+        if !scene.cameras.is_empty() {
+            count_seen += 1;
+            seen += is_right;
+        }
     }
     figure("constants.surface.right", 100.0 * right as f64 / BUILDINGS as f64, "%");
     figure("constants.surface.right_with_camera", 100.0 * seen as f64 / count_seen as f64, "%");

@@ -23,7 +23,9 @@ const SINE_LIMIT: f64 = 0.06;
 const COINCIDENT: f64 = 1e-18;
 
 /// Prior of the endpoint noise. `PRIOR_NOISE`: its standard deviation in units of half the image's longer side.
-/// `PRIOR_COUNT`: the number of segments to which the prior is equivalent. [origin not recorded]
+/// `PRIOR_COUNT`: the number of segments to which the prior is equivalent. At half and twice either value, the median
+/// error of directions stays 0.29 to 0.30°, and nine of ten errors stay below 1.5 to 1.6 times the stated error.
+/// [bench vp:panoramas]
 const PRIOR_NOISE: f64 = 0.001;
 const PRIOR_COUNT: f64 = 2.0;
 
