@@ -5,6 +5,8 @@
 A CONSTANT is `FILE:NAME`, such as `src/features/score.rs:SEAM`, or one element of an array or a tuple,
 `src/rectify/manhattan.rs:FOCALS[0]`. It is multiplied by each of the factors, or takes the values of
 `FILE:NAME=0.9,0.99`. Floats and whole numbers can be measured, alone and in arrays and tuples.
+Constants that stand in patterns or lengths of arrays, or that are borrowed for more than a statement, cannot: the copy
+does not compile.
 
 The tool copies the tracked files into `target/sensitivity` and changes only this copy: there, a constant becomes a
 function that reads its factor or its value from the environment variable LUXFER_CONSTANTS, once, and a constant that
