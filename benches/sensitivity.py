@@ -83,6 +83,8 @@ def as_function(path: str, match: re.Match, measured: bool) -> str:
 def replace(files: dict[str, str], constant: str, measured: bool = True) -> None:
     """Replaces a constant by a function in all files, and constants that use it by functions as well."""
     path, name = constant.split(":")
+    if path not in files:
+        sys.exit(f"there is no file {path}")
     form = rf"^((?:pub(?:\([^)]*\))? )?)const ({name}): ([^=]+?) =\s+(.*?);$"
     match = re.search(form, files[path], re.M | re.S)
     if not match:

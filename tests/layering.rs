@@ -87,7 +87,7 @@ const PER_THREAD: (&str, &str) = ("thread_local!", "quiet");
 
 /// Numbers of comments on constants with the tags `[origin not recorded]`, and `[judged on N photos]` or
 /// `[judged on N scenes]` (docs/glossary.md, "Tags of constants"). They may only be lowered.
-const UNRECORDED: usize = 8;
+const UNRECORDED: usize = 4;
 const JUDGED: usize = 99;
 
 /// Maximum number of lines of a file.
