@@ -12,10 +12,10 @@ use glam::Vec3;
 const FULL_CREASE: f32 = 0.25;
 /// A depth discontinuity is an edge of full strength if the second difference of the depth is at least this share of
 /// the depth. The mean strength is 77 % on outlines and 0.3 % inside of objects; at half of this value it is 78 % and
-/// 0.9 %, at twice that 74 % and 0.02 %. [bench constants:guides]
+/// 0.9 %, at twice the value 74 % and 0.02 %. [bench constants:guides]
 const FULL_STEP: f32 = 0.02;
 /// Standard deviation of the blur of the edges, in pixels. Because of the blur, patches beside an edge contain a part
-/// of the edge. The mean strength on outlines is 77 %; at half of this value it is 92 %, at twice that 56 %.
+/// of the edge. The mean strength on outlines is 77 %; at half of this value it is 92 %, at twice the value 56 %.
 /// [bench constants:guides]
 const BLUR: f32 = 0.8;
 

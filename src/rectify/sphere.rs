@@ -16,7 +16,7 @@ use glam::{DMat3, DVec2, DVec3};
 const ENDPOINT_LIMIT: f64 = 0.006;
 /// Limit of the sine `s` of the angle between a segment and the line from its midpoint to a vanishing point. It matters
 /// for short segments, whose `d` is small at every angle. AUC@10 is 76.9 % (NYU) and 93.0 % (York Urban); at half of
-/// this value it is 75.9 % and 92.3 %, at twice that 76.3 % and 93.1 %. [bench vp:segments]
+/// this value it is 75.9 % and 92.3 %, at twice the value 76.3 % and 93.1 %. [bench vp:segments]
 const SINE_LIMIT: f64 = 0.06;
 
 /// A point coincides with the midpoint of a line, up to rounding, if their squared distance is at most this.

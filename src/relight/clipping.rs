@@ -18,7 +18,7 @@ use glam::{BVec3, DVec3, Vec3};
 /// [convention]
 const CLIPPED: f32 = 0.987;
 /// The line between two channels is fitted only if at least this share of the pixels is unclipped in both. Half of this
-/// value changes no figure; at twice that, 68 % of the channels get an exact target instead of 70 %.
+/// value changes no figure; at twice the value, 68 % of the channels get an exact target instead of 70 %.
 /// [bench constants:colour]
 const MIN_UNCLIPPED_SHARE: f64 = 0.02;
 /// Strength of the regularisation of the fitted line. If the relative standard deviation of the predicting channel is
