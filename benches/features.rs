@@ -1,6 +1,6 @@
 //! Benchmark of features: the time per megapixel; normals compared with Open3D on rooms with known normals and on
 //! RGB-D pairs; the room layout from the lines of those pairs and from strokes. With the argument `knobs`: only the
-//! error of normals against the window.
+//! error of normals against the window; with `layouts`: only the room layout.
 
 mod harness;
 
@@ -40,6 +40,9 @@ struct Case {
 
 fn main() {
     let pool = Pool::new(2).unwrap();
+    if std::env::args().any(|arg| arg == "layouts") {
+        return pool.run(|| layouts(&pairs().iter().collect::<Vec<_>>()));
+    }
     let rooms = [0.0, 0.002, 0.01].map(room);
     pool.run(|| knobs(&rooms));
     if std::env::args().any(|arg| arg == "knobs") {
@@ -64,6 +67,7 @@ fn layouts(pairs: &[&Case]) {
         ["pair", "depth from", "off by %, half", "within 25 %", "trusted half: off by %", "other half", "normals deg"];
     let mut table = Table::new(head);
     let mut errors = Vec::new();
+    let mut means = [0.0; 3];
     let monitor = Monitor::default();
     for case in pairs {
         let camera = rectify::Params {
@@ -87,9 +91,10 @@ fn layouts(pairs: &[&Case]) {
             ("lines and strokes", &view.segments, &painted),
             ("nothing seen", &[], &[]),
         ];
-        for (name, segments, strokes) in sources {
+        for ((name, segments, strokes), mean) in sources.into_iter().zip(&mut means) {
             let found = of(None, segments, strokes);
             let (median_error, cells) = layout_row(case, &found, &measured);
+            *mean += median_error / pairs.len() as f64;
             if name == "lines" {
                 errors.push(median_error);
             }
@@ -98,6 +103,9 @@ fn layouts(pairs: &[&Case]) {
     }
     table.print("The room laid out from its lines and strokes, beside the measured depth, but for its scale");
     figure("features.layout.depth_error", median(&errors), "%");
+    for (name, mean) in ["lines", "strokes", "nothing"].into_iter().zip(means) {
+        figure(&format!("features.layout.mean_error.{name}"), mean, "%");
+    }
 }
 
 /// Median error of the depth of a layout in %, and the cells of its table row.

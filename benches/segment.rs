@@ -1,6 +1,6 @@
 //! Benchmark of segmentation: the time per megapixel; masks compared with GrabCut, a random forest and a support
 //! vector machine with RBF kernel from equal strokes; calibration; and the paper's Figs. 5 (samples) and 6 (channels)
-//! on rooms with exact masks.
+//! on rooms with exact masks. With the argument `masks`: only masks and calibration.
 
 mod harness;
 
@@ -40,10 +40,14 @@ fn main() {
         let rooms = [1, 2].into_iter().flat_map(room);
         rooms.chain(photos()).collect()
     });
+    let rooms: Vec<&Case> = cases.iter().filter(|c| c.plane.is_none()).collect();
+    if std::env::args().any(|arg| arg == "masks") {
+        masks(&pool, &cases, f64::NAN);
+        return pool.run(|| calibration(&rooms));
+    }
     let update = pool.run(|| timing(&cases[0]));
     masks(&pool, &cases, update);
     pool.run(|| refinement(&cases));
-    let rooms: Vec<&Case> = cases.iter().filter(|c| c.plane.is_none()).collect();
     pool.run(|| {
         calibration(&rooms);
         samples(&rooms);

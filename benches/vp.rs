@@ -1,6 +1,9 @@
 //! Benchmark of vanishing points: the accuracy of several methods on labelled sets of segments and on the pixels of
 //! re-projected panoramas, and the error against time with fewer lines or pixels. The latter is measured also on
 //! generated rooms, whose directions are known exactly.
+//!
+//! Arguments select sections: accuracy on given segments (`segments`) and on panoramas (`panoramas`); time, and error
+//! against time (`curves`).
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
@@ -32,16 +35,39 @@ const TURNS: [[f32; 2]; 4] = [[0.0, 0.0], [0.3, 0.1], [-0.25, -0.15], [0.8, 0.0]
 const ROUNDS: usize = 3;
 
 fn main() {
+    let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
+    let wants = |section: &str| chosen.is_empty() || chosen.iter().any(|c| c == section);
     let pool = Pool::new(2).unwrap();
     let sets = ["nyu_dev", "yud_dev"].map(given_set);
-    pool.run(|| given_segments(&sets));
+    if wants("segments") {
+        pool.run(|| given_segments(&sets));
+    }
     let photos = labelled_photos();
-    pool.run(|| {
-        panoramas(&photos);
-        let mut plot = Plot::new("Vanishing points of generated rooms, reduced", "seconds", "median error, degrees");
-        reductions(&mut plot, &rooms());
-        plot.write("vp_rooms").unwrap();
-    });
+    if wants("panoramas") {
+        pool.run(|| panoramas(&photos));
+    }
+    if wants("curves") {
+        pool.run(|| curves(&sets, &photos));
+    }
+}
+
+/// Measures times, and errors against time.
+fn curves(sets: &[Option<GivenSet>; 2], photos: &[Labelled]) {
+    time_segments(sets);
+    plot_longest(sets);
+    match photos {
+        [] => absent("vp.megapixel.ms", "the panoramas are not there"),
+        photos => {
+            let mut plot =
+                Plot::new("Vanishing points from pixels, photos reduced", "seconds", "median error, degrees");
+            reductions(&mut plot, photos);
+            plot.write("vp_pixels").unwrap();
+            figure("vp.megapixel.ms", megapixel(photos), "ms");
+        }
+    }
+    let mut plot = Plot::new("Vanishing points of generated rooms, reduced", "seconds", "median error, degrees");
+    reductions(&mut plot, &rooms());
+    plot.write("vp_rooms").unwrap();
 }
 
 fn methods() -> [(&'static str, Params); 4] {
@@ -93,8 +119,6 @@ fn given_segments(sets: &[Option<GivenSet>; 2]) {
     table.print("From given segments, focal length unknown");
     print_bounds(sets);
     headline.iter().for_each(|(name, auc)| figure(name, *auc, "%"));
-    time_segments(sets);
-    plot_longest(sets);
 }
 
 /// Prints the lowest errors that the lines allow: errors of directions that are fitted to the labelled lines with a
@@ -184,12 +208,10 @@ fn panoramas(photos: &[Labelled]) {
     if photos.is_empty() {
         absent("vp.panorama.median_deg", "the panoramas are not there");
         absent("vp.panorama.failures", "the panoramas are not there");
-        absent("vp.megapixel.ms", "the panoramas are not there");
         return;
     }
     let mut table =
         Table::new(["method", "median deg", "90 % below", "beyond 5 deg", "error / stated: half", "90 %", "ms"]);
-    let mut plot = Plot::new("Vanishing points from pixels, photos reduced", "seconds", "median error, degrees");
     for (k, (method, params)) in methods().iter().enumerate() {
         let all: Vec<(f64, Vec<[f64; 2]>)> = photos.iter().map(|p| found(p, params)).collect();
         let flat: Vec<[f64; 2]> = all.iter().flat_map(|a| a.1.clone()).collect();
@@ -210,12 +232,10 @@ fn panoramas(photos: &[Labelled]) {
         if k == 0 {
             figure("vp.panorama.median_deg", quantile(&angles, 0.5), "degrees");
             figure("vp.panorama.failures", failures as f64, "count");
+            figure("vp.panorama.of_stated", quantile(&shares, 0.9), "of the stated error, 90 % below");
         }
     }
     table.print("From pixels of re-projected panoramas, focal length unknown");
-    reductions(&mut plot, photos);
-    plot.write("vp_pixels").unwrap();
-    figure("vp.megapixel.ms", megapixel(photos), "ms");
 }
 
 /// Milliseconds from the pixels of a photo of one megapixel to its vanishing points: the median over the photos of the

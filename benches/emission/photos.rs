@@ -1,7 +1,7 @@
 //! Patterns from photos: ceilings photographed in perspective with noise, photos of real rooms, and real ceilings seen
 //! straight from below.
 
-use crate::harness::{Table, absent, figure};
+use crate::harness::{Table, absent, figure, median};
 use crate::score::{STATISTICS, Score};
 use crate::{DESIGNS, Exemplar, save};
 use glam::{DMat3, DVec2, Vec3};
@@ -115,17 +115,22 @@ pub fn real() {
         .collect();
     names.sort();
     let mut table = table_of_real();
+    let (mut lamps, mut errors) = (0, Vec::new());
     for name in &names {
         match unwarped(&root, name) {
             Ok((exemplar, photo, to_photo)) => {
                 let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
                 save(&exemplar.unwarped, &format!("emission_real_{name}_exemplar"));
-                row(&mut table, name, &input);
+                let result = row(&mut table, name, &input);
+                lamps += result.exemplar_lamps;
+                errors.push(result.error);
             }
             Err(reason) => println!("# {name}: {reason}"),
         }
     }
     table.print("Real photos, unwarped and continued to twice their size");
+    figure("emission.real.whole_lamps", lamps as f64, "lamps shown completely, all photos");
+    figure("emission.real.stated_error", 100.0 * median(&errors), "%, median");
     NO_PATTERN.iter().for_each(|(name, reason)| println!("# {name} is no exemplar: {reason}"));
 }
 

@@ -1,7 +1,7 @@
 //! Finds the float constants of a source file, and the tags in their comments that state their origin.
 
 /// The documented tags (docs/glossary.md, "Tags of constants") up to their variable parts.
-const TAGS: [&str; 6] = ["[paper", "[bench", "[rounding]", "[convention", "[judged on ", "[origin not recorded]"];
+const TAGS: [&str; 5] = ["[paper", "[bench", "[rounding]", "[convention", "[judged on "];
 
 /// Vectors and matrices of floats.
 const VECTORS: [&str; 14] = [
@@ -9,11 +9,9 @@ const VECTORS: [&str; 14] = [
     "Quat",
 ];
 
-/// The constants of a file whose origin nobody recorded or somebody judged by eye, and those with a wrong tag.
+/// The constants of a file that somebody judged by eye, and those with a wrong tag.
 #[derive(Default, Debug, PartialEq)]
 pub struct Origins {
-    /// Comments with the tag `[origin not recorded]`.
-    pub unrecorded: usize,
     /// Comments with a tag `[judged on N photos]` or `[judged on N scenes]`.
     pub judged: usize,
     /// Lines of the constants without a tag, and tags that do not state how many photos or scenes were judged.
@@ -28,7 +26,6 @@ pub fn origins(code: &str, with_vectors: bool) -> Origins {
     let comments = comments.iter().map(|l| l.trim_start_matches('/').trim()).collect::<Vec<_>>().join(" ");
     let judged: Vec<&str> = comments.match_indices("[judged on ").map(|(at, _)| &comments[at..]).collect();
     let mut found = Origins {
-        unrecorded: comments.matches("[origin not recorded]").count(),
         judged: judged.len(),
         wrong: judged.iter().filter(|t| !counts_photos(t)).map(|t| t.chars().take(30).collect()).collect(),
     };
