@@ -2,8 +2,8 @@
 
     python3 docs/notes/draw_comments.py SEED TODAY EARLIER COMMIT FOLDER
 
-Writes TODAY blocks of the working tree and EARLIER blocks of COMMIT, shuffled, into FOLDER/blocks.txt, without the names
-of their files, and which block comes from where into FOLDER/key.txt.
+Writes TODAY blocks of the working tree and EARLIER blocks of COMMIT, shuffled and without the names of their files,
+into FOLDER/blocks.txt, and where each block comes from into FOLDER/key.txt.
 """
 
 from __future__ import annotations

@@ -14,25 +14,18 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Only this number of the longest segments is used; the other segments are ignored.
 pub const MAX_SEGMENTS: usize = 160;
-/// Sample points along each segment, as shares of its length. With the first point at 0.075 or 0.3, or the last one at
-/// 0.7 or 0.95, the error of the depth is 14.1 to 14.4 % from lines and 13.0 to 13.4 % from lines and strokes, instead
-/// of 14.2 % and 13.0 %. [bench features:layouts]
+/// Sample points along each segment, as shares of its length. [bench features:layouts]
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
-/// Penalty of a segment on a face that cannot contain it, relative to the segment's weight. At half and twice this
-/// value, the error of the depth from lines is 14.4 % instead of 14.2 %. [bench features:layouts]
+/// Penalty of a segment on a face that cannot contain it, relative to the segment's weight. [bench features:layouts]
 const IMPOSSIBLE_PENALTY: f64 = 1.5;
-/// Additional reward of a segment on a seam, relative to the reward of a segment on a face. At half and twice this
-/// value, the error of the depth from lines is 14.4 % instead of 14.2 %. [bench features:layouts]
+/// Additional reward of a segment on a seam, relative to the reward of a segment on a face. [bench features:layouts]
 const SEAM: f64 = 2.0;
 /// A segment lies on the seam of two faces if the distances to both faces along its rays differ by less than this
-/// share. At half and twice this value, the error of the depth from lines is 14.6 % and 13.7 % instead of 14.2 %.
-/// [bench features:layouts]
+/// share. [bench features:layouts]
 const SEAM_WIDTH: f64 = 0.03;
 /// `ON_PLANE`: reward if all positive strokes lie on one face of the box. `ELSEWHERE`: penalty if all negative strokes
 /// lie on this face too. The agreement of two boxes with the segments usually differs by less than these values. So if
-/// strokes and segments disagree, the strokes usually decide. The error of the depth from lines and strokes is 13.0 %;
-/// at twice `ON_PLANE` or half `ELSEWHERE` it is 14.6 % and 14.2 %, and at half `ON_PLANE` or twice `ELSEWHERE` it does
-/// not change. [bench features:layouts]
+/// strokes and segments disagree, the strokes usually decide. [bench features:layouts]
 const ON_PLANE: f64 = 2.0;
 const ELSEWHERE: f64 = 1.0;
 /// Weight of the surfaces over which strokes have grown, relative to the strokes. [bench photos:masks]

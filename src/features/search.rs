@@ -20,9 +20,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// `PRIOR_SIDE`: expected distance of a wall, ceiling or floor of which the photo shows nothing, in units of the
 /// distance to the back wall. It is equal for all sides, so that the result does not depend on the photo's orientation.
-/// `PRIOR_COST`: factor on the squared logarithm of the ratio of a side to `PRIOR_SIDE`. The mean error of the depth
-/// from lines, from lines and strokes, and from neither is 14.2 %, 13.0 % and 25 %. At half and twice either value, it
-/// is 14.2 to 14.4 %, 13.0 to 13.2 % and 24 to 26 %. [bench features:layouts]
+/// `PRIOR_COST`: factor on the squared logarithm of the ratio of a side to `PRIOR_SIDE`. [bench features:layouts]
 const PRIOR_SIDE: f64 = 0.4;
 const PRIOR_COST: f64 = 0.01;
 /// For each side, the values `MIN_SIDE × RATIO^k` with `k < GRID` are tried besides those that the segments suggest.
@@ -36,9 +34,7 @@ const GRID: usize = 64;
 const PEAKS: usize = 24;
 /// A ray tells two boxes apart if it meets different faces in them, or faces whose distances differ by more than the
 /// factor `MIN_RATIO`. Two boxes are clearly different if more than the share `MIN_DIFFERENT_SHARE` of the view's rays
-/// tell them apart. No error of depth changes at half the share, and between ratios of 1.15 and 1.6. At twice the
-/// share, the errors from lines and from lines and strokes are 14.4 % and 13.2 % instead of 14.2 % and 13.0 %.
-/// [bench features:layouts]
+/// tell them apart. [bench features:layouts]
 const MIN_DIFFERENT_SHARE: f64 = 0.05;
 const MIN_RATIO: f64 = 1.3;
 /// Two boxes are compared along a grid of `RAYS × RAYS` rays over the photo.

@@ -7,16 +7,13 @@ use crate::job::Job;
 use glam::Vec3;
 
 /// Neighbouring pixels form an edge of full strength if 1 minus the cosine between their normals is at least this
-/// (about 40°). Between half and twice this value, the mean strength on outlines is 76 to 77 %, and inside of objects
-/// it stays 0.3 %. [bench constants:guides]
+/// (about 40°). [bench constants:guides]
 const FULL_CREASE: f32 = 0.25;
 /// A depth discontinuity is an edge of full strength if the second difference of the depth is at least this share of
-/// the depth. The mean strength is 77 % on outlines and 0.3 % inside of objects; at half of this value it is 78 % and
-/// 0.9 %, at twice the value 74 % and 0.02 %. [bench constants:guides]
+/// the depth. [bench constants:guides]
 const FULL_STEP: f32 = 0.02;
 /// Standard deviation of the blur of the edges, in pixels. Because of the blur, patches beside an edge contain a part
-/// of the edge. The mean strength on outlines is 77 %; at half of this value it is 92 %, at twice the value 56 %.
-/// [bench constants:guides]
+/// of the edge. [bench constants:guides]
 const BLUR: f32 = 0.8;
 
 /// Returns the strength of the edge at each pixel, in `[0, 1]`.

@@ -14,8 +14,7 @@ use crate::scene::Camera;
 use glam::Vec3;
 
 /// A point at depth d in the previous frame counts as occluded there if d > (1 + DEPTH_TOLERANCE) s. Here s is the
-/// depth of the surface that the previous frame shows at the point's position. Between half and twice this value, the
-/// share of the pixels with a wrong answer is 0.42 to 0.43 %; at a tenth of it, 0.47 %. [bench constants:motion]
+/// depth of the surface that the previous frame shows at the point's position. [bench constants:motion]
 const DEPTH_TOLERANCE: f32 = 0.02;
 
 /// The motion between two frames.

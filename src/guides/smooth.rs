@@ -12,9 +12,7 @@ const PASSES: u32 = 3;
 /// The cubic B-spline that each pass applies along x and y. [convention]
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
 /// Relative difference |a - b| / m at which the weight of a neighbour falls to 1/e. a and b are the brightnesses of the
-/// pixel and of the neighbour; m is their mean, plus 2 % of the mean luminance of the image. The errors of full and of
-/// indirect light are 10.9 % and 12.1 %; at half of this value they are 9.7 % and 13.2 %, at twice the value 17.6 % and
-/// 12.7 %. [bench constants:guides]
+/// pixel and of the neighbour; m is their mean, plus 2 % of the mean luminance of the image. [bench constants:guides]
 const TOLERANCE: f32 = 0.25;
 
 /// Averages the light over neighbours of the same material, similar normal and similar brightness. Brightness is

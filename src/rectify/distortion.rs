@@ -37,8 +37,7 @@ const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
 /// Number of pixels on each side of a segment within which its edge is searched for.
 const SEARCH_WIDTH: i32 = 4;
-/// A segment is used only if its edge is found along at least this share of its length. No figure changes between 0.35
-/// and 0.98. [bench constants:lens]
+/// A segment is used only if its edge is found along at least this share of its length. [bench constants:lens]
 const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of traced segments; with fewer segments there is no estimate.
 const MIN_SEGMENTS: usize = 12;
@@ -48,8 +47,7 @@ const MIN_SEGMENTS: usize = 12;
 /// Without a floor, an edge without residuals would have an infinite weight. [rounding]
 const POSITION_FLOOR: f64 = 0.01;
 /// A segment is ignored if the root mean square residual of its edge about the fitted parabola is above this, in
-/// pixels. The mean error of the distortion is 0.58 % here and at twice this value, 0.61 % at half of it, and 7 % at
-/// 0.1. [bench constants:lens]
+/// pixels. [bench constants:lens]
 const MAX_RESIDUAL: f64 = 0.25;
 /// Limit of Tukey's biweight in standard deviations (95 % efficiency). [convention]
 const BIWEIGHT_LIMIT: f64 = 4.685;

@@ -18,9 +18,7 @@ const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
 /// Prior of the focal length in the search. `USUAL_FOCAL`: median in units of half the longer image side. For a
 /// landscape photo it equals the median of [`super::focal`]; for a portrait photo it is longer, because that median is
-/// a share of the image width. `SEARCH_SPREAD`: standard deviation of the logarithm. At half and twice this spread, the
-/// median error of directions is 0.284° and 0.298° instead of 0.295°, and one and no direction of 42 has an error above
-/// 5°. \[bench vp:panoramas\]
+/// a share of the image width. `SEARCH_SPREAD`: standard deviation of the logarithm. \[bench vp:panoramas\]
 pub const USUAL_FOCAL: f64 = 2.0 * USUAL_FOCAL_PER_WIDTH;
 const SEARCH_SPREAD: f64 = 0.4;
 
@@ -30,7 +28,7 @@ const SEARCH_SPREAD: f64 = 0.4;
 const FOCAL_COST: f64 = 0.004;
 
 /// Share of a line's weight that the search for further candidates ignores if a candidate explains the line completely.
-/// The median error of directions stays 0.295° between 0.5 and 0.98. [bench vp:panoramas]
+/// [bench vp:panoramas]
 const EXPLAINED_SHARE: f32 = 0.9;
 
 /// Two candidates are paired at a focal length, the given one or one of [`FOCALS`], if the magnitude of the cosine of

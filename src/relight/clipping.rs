@@ -17,13 +17,12 @@ use glam::{BVec3, DVec3, Vec3};
 /// the unwarped photo, whose pixels are means of photo pixels, the limit is lower (`emission::Params::clip_level`).
 /// [convention]
 const CLIPPED: f32 = 0.987;
-/// The line between two channels is fitted only if at least this share of the pixels is unclipped in both. Half of this
-/// value changes no figure; at twice the value, 68 % of the channels get an exact target instead of 70 %.
+/// The line between two channels is fitted only if at least this share of the pixels is unclipped in both.
 /// [bench constants:colour]
 const MIN_UNCLIPPED_SHARE: f64 = 0.02;
 /// Strength of the regularisation of the fitted line. If the relative standard deviation of the predicting channel is
-/// smaller than this, the line runs nearly through black; if it is larger, the line follows the pixels. Between half
-/// and twice this value, the error of the mean colour of clipped planes is 8.8 % to 9.0 %. [bench constants:colour]
+/// smaller than this, the line runs nearly through black; if it is larger, the line follows the pixels.
+/// [bench constants:colour]
 const RIDGE: f64 = 0.05;
 
 /// Returns the mean colour of `pixels`, and for each channel the share of pixels in which its value remains unknown,

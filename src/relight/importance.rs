@@ -88,8 +88,7 @@ const MAX_CELLS: usize = 512;
 /// The emission of a cell is the mean of a grid of texture look-ups. Along each side, the grid has about one look-up
 /// per texel, at least `clamp(LOOK_UPS_ACROSS / cells, 4, MIN_LOOK_UPS)` and at most `MAX_LOOK_UPS`. Here `cells` is
 /// the number of cells of the map along this side. With fewer look-ups, texels cut by cell borders would get wrong
-/// weights, which biases periodic patterns. The errors of the bench are at most 1.2 %. At half of any of the three
-/// values, they are up to 3.2 %; at twice the value, none is smaller. [bench constants:map]
+/// weights, which biases periodic patterns. [bench constants:map]
 const MIN_LOOK_UPS: usize = 16;
 const LOOK_UPS_ACROSS: usize = 1024;
 const MAX_LOOK_UPS: usize = 64;

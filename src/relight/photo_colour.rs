@@ -29,9 +29,7 @@ pub struct PhotoColour {
     pub constraint: [Constraint; 3],
 }
 
-/// Width of the halo of glare around a lamp, as a share of the photo's longer side. The error of the colour beside
-/// lamps with glare is 5.0 % without the halo, 2.6 % with half of this width, 2.5 % with it, and 2.4 % with three times
-/// the width. [bench constants:colour]
+/// Width of the halo of glare around a lamp, as a share of the photo's longer side. [bench constants:colour]
 const HALO: f32 = 0.01;
 /// A photo with a value above this has values beyond white (1), so it is not clipped at white. [rounding]
 const WHITE: f32 = 1.001;

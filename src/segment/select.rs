@@ -21,9 +21,8 @@ const FOLDS: usize = 8;
 /// Approximate maximum number of samples per class in the fits of cross-validation. This number is enough to tell which
 /// of two models is better.
 const CV_SAMPLES: usize = 250;
-/// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction. No figure
-/// changes between half and twice the lower bound. The error of the calibration is 0.030; with an upper bound of 1 and
-/// of 4, it is 0.047 and 0.013. [bench segment:masks]
+/// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
+/// [bench segment:masks]
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
 /// A fit ends with the first step whose expected decrease of the objective (see `logistic::fit`) is below this value.
 /// `CV_PRECISION` applies to fits that only compare models. With the default number of samples, the price of a term is

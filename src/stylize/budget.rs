@@ -15,8 +15,7 @@ const MIN_ERRORS: usize = 8;
 /// Maximum number of points of the sorted curve to which a hyperbola is fitted.
 const SAMPLES: usize = 256;
 
-/// Minimum share of the variance of the sorted errors that a hyperbola must explain. No figure changes between 0.4 and
-/// this value; at 0.95, the errors of tone and of the guides are up to 1.1 % larger. [bench constants:paint]
+/// Minimum share of the variance of the sorted errors that a hyperbola must explain. [bench constants:paint]
 const MIN_EXPLAINED: f64 = 0.8;
 /// A curve has a knee only if it runs farther than this below the diagonal. No figure changes between half and twice
 /// this value. [bench constants:paint]

@@ -26,9 +26,7 @@ use glam::DVec2;
 use std::collections::HashMap;
 
 /// Where lamps are dense, all lamps in one square of the texture share a random number. This is the square's side, as a
-/// multiple of the longest lamp's length. At half and at twice this value, 83 % and 97 % of the expected lamps are kept
-/// instead of 90 %, and 27 % and 5 % of the lamps have a neighbour of another exemplar instead of 14 %.
-/// [bench constants:lamps]
+/// multiple of the longest lamp's length. [bench constants:lamps]
 const SHARED_SQUARE: f64 = 3.0;
 /// Consider the lamps of the second and all further exemplars. Lamps are dense if more than this share of them overlap
 /// two or more lamps of earlier exemplars. No figure changes between half and twice this value. [bench constants:lamps]

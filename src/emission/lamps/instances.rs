@@ -18,8 +18,7 @@ use crate::job::Job;
 use glam::{DMat2, DVec2};
 use std::collections::BTreeMap;
 
-/// A lamp is placed only if patches that have the same shift copy at least this share of it. Half of this value changes
-/// no figure; at twice the value, 89 % of dense lamps are kept instead of 90 %. [bench constants:lamps]
+/// A lamp is placed only if patches that have the same shift copy at least this share of it. [bench constants:lamps]
 const MIN_SHARE: f64 = 0.3;
 /// On a lattice, a lamp is placed if other lamps occupy at most this share of its pixels. Lattice lamps overlap only
 /// through rounding: shifts are rounded by up to half a pixel, so two lamps overlap by at most one row or column. This

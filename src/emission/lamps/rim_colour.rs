@@ -15,13 +15,11 @@ use glam::{DVec3, Vec3};
 /// [convention]
 const MAX_CLIPPED: f32 = 1.05;
 /// A pixel belongs to a lamp's rim only if its strongest channel is at least this share of the level at which channels
-/// clip. The mean error of the restored colours is 2.2 %; at half of this value it is 3.0 %, at 0.9 1.6 %.
-/// [bench constants:rims]
+/// clip. [bench constants:rims]
 const MIN_BRIGHTNESS: f32 = 0.5;
 /// A pixel belongs to a lamp's rim only if it is at most this many columns and rows away from a pixel of the lamp.
 const RIM_WIDTH: usize = 2;
-/// A colour is read from a rim only if the rim has at least this number of pixels. Between a quarter and four times
-/// this number, the mean error of the restored colours stays 2.2 %. [bench constants:rims]
+/// A colour is read from a rim only if the rim has at least this number of pixels. [bench constants:rims]
 const MIN_RIM: f64 = 8.0;
 /// Minimum ratio of a channel of a rim's colour to its strongest channel; a weaker channel is raised to this ratio. In
 /// coloured light, it limits restored values to 16 times the level at which channels clip. White light has larger

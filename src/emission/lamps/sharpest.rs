@@ -21,8 +21,7 @@ const BLUR_PIXELS: f64 = 2.0;
 const MAX_DIFFERENCE: f64 = 0.5;
 
 /// A lamp counts as sharp if the number of photo pixels that show it is at least this share of the largest number among
-/// similar lamps. The root mean square distance of lamps from their lattice sites is 0.31 % of a period; at half and at
-/// twice this value, 0.37 % and 0.20 %. [bench emission:perspective]
+/// similar lamps. [bench emission:perspective]
 const MIN_SHARP_SHARE: f64 = 0.4;
 
 /// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest dark share of its kind by

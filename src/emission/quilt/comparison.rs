@@ -21,8 +21,7 @@ const TOLERANCE: (f32, f32) = (1.1, 1e-6);
 const LIGHT_STEPS: f32 = 255.0;
 
 /// Let n be the largest number of empty pixels of a block that any candidate patch fills. Patches that fill fewer than
-/// this share of n are discarded; the others are compared by their error. Of dense lamps that are blended, 90 % are
-/// kept here and at 0.8, and 83 % at 0.5. [bench constants:lamps]
+/// this share of n are discarded; the others are compared by their error. [bench constants:lamps]
 const ENOUGH_COVERAGE: f64 = 0.95;
 
 /// If a block has more than `FINALISTS` candidate patches, they are first compared in every `ROW_STEP`-th row of the

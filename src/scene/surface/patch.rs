@@ -22,8 +22,7 @@ const DIRECTION_CELL: f64 = 0.035;
 const DIRECTIONS: usize = 32;
 /// Maximum number of planes returned.
 const PLANES: usize = 16;
-/// Minimum area of a plane relative to the area of the largest plane. The bench finds 88 % of the ceilings, also
-/// without this limit or with half of it; with twice and four times the limit, 85 % and 78 %. [bench constants:surface]
+/// Minimum area of a plane relative to the area of the largest plane. [bench constants:surface]
 const MIN_AREA: f64 = 0.05;
 
 /// A triangle counts as sloped if it is inclined to the plane by 5 to 75 degrees; these are the cosines of 75 and 5
