@@ -221,7 +221,7 @@ class Work(Case):
             {"kind": kind, "radius": 2.5, "points": [c for x, y in places for c in (x * width, y * height)]}
             for kind, places in STROKES
         ]
-        return {**server.json("start")["project"], "strokes": strokes, "noise": 1.0}
+        return {**server.json("start")["project"], "strokes": strokes, "noise": 1.0, "mix": {"1": 0.5}}
 
     def test_a_project_gives_the_same_again(self):
         server = self.serve(self.photo)
@@ -330,6 +330,9 @@ class Parts(Case):
             {"strokes": [{"kind": "wall", "radius": 1, "points": [1, 2]}]},
             {"removed": [[1, float("nan")]]},
             {"pattern": {"scale": "distance"}},
+            {"mix": {"A": 1}},
+            {"mix": {"1": -0.1}},
+            {"lux_plane": {"surface": None, "height": -1}},
         ):
             with self.assertRaises(project.Invalid, msg=str(wrong)):
                 project.checked({**good, **wrong})

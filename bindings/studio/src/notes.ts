@@ -1,5 +1,6 @@
 // What the library says about its results: proposals, warnings, and where one more stroke helps most.
 
+import { adviceFor } from "./advice";
 import type { Message } from "./api";
 import { byId, make } from "./dom";
 import type { Mark } from "./marks";
@@ -25,13 +26,20 @@ const STAGES: Record<string, string> = {
 const MASKS: Record<string, string> = { plane: "plane", lights: "lights" };
 
 export class Notes {
+  private room: Warning[] = [];
   private warnings: Warning[] = [];
   private doubt: { phase: string; at: [number, number] } | null = null;
   private failure = "";
   onMarks: (marks: Mark[]) => void = () => {};
 
+  /** Warnings about the room, which stay until another room is opened. */
+  setRoom(message: Message): void {
+    this.room = (message.warnings as Warning[]).map((w) => ({ ...w, stage: "scene", at: null }));
+    this.draw();
+  }
+
   setWarnings(message: Message): void {
-    this.warnings = message.list;
+    this.warnings = (message.list as Warning[]).filter((w) => w.stage !== "scene");
     this.draw();
   }
 
@@ -52,7 +60,7 @@ export class Notes {
 
   private draw(): void {
     const proposed = this.proposed;
-    const rest = this.warnings.filter((w) => w.code !== "PROPOSED" && !(w.code === "UNSEEN" && this.doubt));
+    const rest = [...this.room, ...this.warnings].filter((w) => w.code !== "PROPOSED" && !(w.code === "UNSEEN" && this.doubt));
     const marks: Mark[] = [];
     const items: HTMLElement[] = [];
     if (this.failure) items.push(item("error", "!", make("b", {}, "Failed: "), this.failure));
@@ -75,7 +83,8 @@ export class Notes {
     rest.forEach((warning, index) => {
       const sign = String(index + 1);
       if (warning.at) marks.push({ at: warning.at, text: sign, isMain: false });
-      const advice = warning.advice ? make("span", { class: "advice" }, sentence(warning.advice)) : "";
+      const said = adviceFor(warning.code, warning.advice);
+      const advice = said ? make("span", { class: "advice" }, sentence(said)) : "";
       items.push(
         item(
           "warning",

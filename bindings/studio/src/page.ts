@@ -5,7 +5,7 @@ import { ask, Connection, Problem, type Message, type Start } from "./api";
 import { byId, hideNotice, make, notice, percent, seconds, short } from "./dom";
 import { onKeys, showKeys } from "./keys";
 import { LampList } from "./lamps";
-import { showLux } from "./lux";
+import { LuxPanel } from "./lux";
 import { maskPicture, rgbPicture, type Masks } from "./masks";
 import { Notes } from "./notes";
 import { Opener } from "./open";
@@ -13,8 +13,10 @@ import { showOut } from "./out";
 import { PatternForm } from "./pattern";
 import { PhotoView } from "./photo_view";
 import type { Project, Store, Stroke } from "./project";
+import { RoomTools } from "./room_tools";
 import { RoomView } from "./room_view";
 import { TOOLS, type Tool } from "./strokes";
+import { shiftBy } from "./surface";
 import { Trade } from "./trade";
 
 const STAGES: Record<string, string> = {
@@ -27,13 +29,18 @@ const STAGES: Record<string, string> = {
   plan: "planning",
 };
 
+/** What belongs to a room and means nothing in another one. */
+const EMPTY_ROOM = { surface: null, zones: [], mix: {}, lux_plane: { surface: null, height: 0.75 }, camera: null };
+
 export class Page {
   readonly photo = new PhotoView();
   readonly room = new RoomView();
+  readonly roomTools = new RoomTools(byId("room-tools"), this.room);
   readonly notes = new Notes();
   readonly lamps = new LampList();
   readonly pattern = new PatternForm();
   readonly trade = new Trade();
+  readonly lux = new LuxPanel();
   readonly connection: Connection;
   private draft: Stroke | null = null;
   private compare = "off";
@@ -80,7 +87,8 @@ export class Page {
     this.photo.strokes = project.strokes;
     this.photo.removed = project.removed;
     this.photo.redraw();
-    this.lamps.setZones(project.zones);
+    this.lamps.setProject(project.zones, project.mix);
+    this.lux.setProject(project.lux_plane);
     this.pattern.show(project);
     this.trade.show(project.noise);
     if (project.camera) this.room.setCamera(project.camera, false);
@@ -106,8 +114,20 @@ export class Page {
     };
     room.onCamera = (camera) => store.change("camera", { camera });
     this.lamps.onZones = (zones) => store.change(`zones ${zones.length}`, { zones });
+    this.lamps.onMix = (mix) => store.change("mix", { mix });
+    this.lamps.onShift = (du, dv) =>
+      store.change("shift", { pattern: shiftBy(du, dv).pattern(store.project.pattern, 0)! });
     this.lamps.onShow = (spots) => room.highlight(spots);
     this.pattern.onChange = (what, patch) => store.change(what, patch);
+    this.roomTools.pattern = () => store.project.pattern;
+    this.roomTools.onPattern = (what, pattern) => store.change(what, { pattern });
+    this.roomTools.onSurface = (surface) => store.change("surface", { surface, zones: [], mix: {} });
+    this.roomTools.onRefused = notice;
+    this.lux.onPlane = (plane) => store.change("plane", { lux_plane: plane });
+    this.lux.onFactor = (factor) => {
+      const white = Number((store.project.white * factor).toPrecision(4));
+      store.change("white", { white: Math.min(1e6, Math.max(1e-3, white)) });
+    };
     this.trade.onNoise = (noise) => store.change("noise", { noise });
     this.notes.onMarks = (marks) => {
       photo.marks = marks;
@@ -115,7 +135,7 @@ export class Page {
     };
     const opener = new Opener({
       photo: (file) => this.open({ ...store.project, photo: file, strokes: [], removed: [] }),
-      room: (file) => this.open({ ...store.project, room: file, surface: null, zones: [], camera: null }),
+      room: (file) => this.open({ ...store.project, ...EMPTY_ROOM, room: file }),
       project: (project) => this.open(project, true),
       demo: () => void this.openDemo(),
     });
@@ -252,8 +272,11 @@ export class Page {
       view: () => this.takeView(message),
       warnings: () => this.takeWarnings(message),
       texture: () => this.takeTexture(message, payload),
-      lamps: () => this.lamps.setLamps(message),
-      lux: () => showLux(message),
+      lamps: () => {
+        this.lamps.setLamps(message);
+        this.roomTools.setLamps(message.list);
+      },
+      lux: () => this.lux.show(message),
       picture: () => this.takePicture(message, payload),
       progress: () => this.roomStatus(`rendering, ${percent(message.share)}`),
       plan: () => {
@@ -289,12 +312,15 @@ export class Page {
 
   private takeRoom(message: Message): void {
     this.pattern.setCandidates(message);
+    this.roomTools.setCandidates(message.candidates);
+    this.lux.setSurfaces(message.surfaces);
+    this.lux.setProject(this.store.project.lux_plane);
     this.room.setCamera(message.camera, true);
     if (this.store.project.camera) this.room.setCamera(this.store.project.camera, false);
     void this.room
       .load(`room.glb?session=${this.store.session}&t=${Date.now()}`)
       .catch((problem) => notice(`The quick view of the room cannot be shown: ${problem.message}`));
-    for (const warning of message.warnings) notice(`Room: ${warning.message}: ${warning.advice}`);
+    this.notes.setRoom(message);
   }
 
   private takeMasks(message: Message, bits: Uint8Array): void {
@@ -348,6 +374,7 @@ export class Page {
 
   private takeTexture(message: Message, payload: Uint8Array): void {
     this.lamps.setTexture(message, payload);
+    this.roomTools.setSurface(message.surface);
     this.pattern.setEstimates(message);
     document.body.dataset.texture = message.digest;
     if (this.photo.view && Number.isFinite(message.distance)) this.photo.view.distance = message.distance;

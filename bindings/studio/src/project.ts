@@ -27,6 +27,11 @@ export interface Pattern {
   keep_whole: boolean;
 }
 
+export interface LuxPlane {
+  surface: string | null; // null: a level plane
+  height: number; // of the level plane above the floor, in metres
+}
+
 export interface Project {
   luxfer_studio: number;
   photo: FileName;
@@ -36,6 +41,8 @@ export interface Project {
   zones: [number, number, number, number][];
   surface: string | null;
   pattern: Pattern;
+  mix: Record<string, number>; // the factor of each kind of lamp
+  lux_plane: LuxPlane;
   white: number;
   camera: Camera | null;
   exposure: number | null;

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from .light import MAX_TEXELS, REACH, RELIGHT
+from .light import REACH, RELIGHT
 from .live import PHASES
 from .project import Project
-from .room import pattern_of
+from .room import texture_settings
 
 HEAD = '''"""Lights a room as in a photo: written by luxfer studio. It needs the package luxfer."""
 
@@ -41,12 +41,16 @@ mask = transfer.image("lights-mask").numpy()[..., 0]
 transfer.use_mask("lights", without(mask, {removed}, {reach} * mask.shape[1]))
 """
 
+#: The lit room if kinds of lamps are dimmed.
+MIXED = "mix.apply(transfer, room.find_surface(surface), {mix})"
+MIX_IMPORTS = "\n# Kinds of lamps are dimmed.\nfrom pathlib import Path\n\nfrom luxfer.studio import mix\n"
+
 TAIL = """
 # The pattern on the surface, and places without lamps: u0, v0, u1, v1 in metres.
 transfer.set_zones({zones})
-transfer.run("unwarp", "emission", max_texels={texels}, pattern={pattern})
+transfer.run("unwarp", "emission", **{texture})
 transfer.run("relight", "relight", white_luminance={white}, relight={relight})
-lit = transfer.scene("lit")
+lit = {lit}
 
 render = luxfer.Render(context, lit)
 render.set_camera(**{camera})
@@ -56,7 +60,7 @@ for lamp in transfer.fixtures:
     print(f"kind {{lamp.kind}}: {{lamp.flux:.0f}} lm, {{lamp.cct:.0f}} K at", [round(x, 2) for x in lamp.position])
 lit.export("lit.glb")
 transfer.save_fixtures("luminaires.csv")
-render.write_exr("render.exr")
+{after}render.write_exr("render.exr")
 render.image("preview").save("render.png", {exposure})
 """
 
@@ -77,12 +81,15 @@ def program(project: Project, size: tuple[int, int], surface: str, camera: dict[
     )
     if project["removed"]:
         out += REMOVED.format(removed=project["removed"], reach=REACH)
+    if project["mix"]:
+        out += MIX_IMPORTS
     return out + TAIL.format(
         zones=project["zones"],
-        texels=MAX_TEXELS,
-        pattern=pattern_of(project),
+        texture=texture_settings(project),
         white=project["white"],
         relight=RELIGHT,
+        lit=MIXED.format(mix=project["mix"]) if project["mix"] else 'transfer.scene("lit")',
+        after=f"mix.mix_schedule(Path('luminaires.csv'), {project['mix']})\n" if project["mix"] else "",
         camera=camera,
         width=size[0],
         height=size[1],
