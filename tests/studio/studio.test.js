@@ -4,11 +4,33 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createServer, request } from "node:http";
 import { join } from "node:path";
-import { test } from "node:test";
-import { browse, changed, folder, missing, open, paint, picture, place, serve, state, STROKES } from "./studio.js";
+import { after, test } from "node:test";
+import {
+  browse,
+  changed,
+  closeBrowser,
+  folder,
+  missing,
+  open,
+  paint,
+  picture,
+  place,
+  serve,
+  state,
+  STROKES,
+} from "./studio.js";
 
 const skip = missing();
 if (skip && process.env.CI) throw new Error(skip);
+
+/** The server of the tests that need none of their own. */
+const shared = { ends: [], after: (work) => shared.ends.push(work) };
+let sharedServer = null;
+const server = () => (sharedServer ??= serve(shared, folder()));
+after(async () => {
+  for (const end of shared.ends) await end();
+  await closeBrowser();
+});
 
 /** Clicks a button that downloads, and returns the file's text or bytes. */
 async function download(page, id, encoding) {
@@ -117,8 +139,8 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
 });
 
 test("by keys alone", { skip }, async (t) => {
-  const server = await serve(t, folder());
-  const page = await open(t, await browse(t), server.address);
+  const { address } = await server();
+  const page = await open(t, await browse(t), address);
   const before = await state(page, "masks");
   // Tab reaches the photo; nothing is clicked in this test.
   for (let i = 0; i < 30 && (await page.evaluate(() => document.activeElement.id)) !== "photo"; i++)
@@ -151,9 +173,9 @@ test("by keys alone", { skip }, async (t) => {
 });
 
 test("windows of any size, light and dark", { skip }, async (t) => {
-  const server = await serve(t, folder());
+  const { address } = await server();
   const browser = await browse(t, { colorScheme: "dark" });
-  const page = await open(t, browser, server.address);
+  const page = await open(t, browser, address);
   const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   assert.equal(await background(), "rgb(23, 25, 28)");
   for (const [width, height] of [
@@ -182,9 +204,9 @@ test("windows of any size, light and dark", { skip }, async (t) => {
 });
 
 test("by touch", { skip }, async (t) => {
-  const server = await serve(t, folder());
+  const { address } = await server();
   const browser = await browse(t, { hasTouch: true, viewport: { width: 800, height: 900 } });
-  const page = await open(t, browser, server.address);
+  const page = await open(t, browser, address);
   const before = await state(page, "rounds");
   await page.locator("label:has(#tool-not-plane)").tap();
   const [x, y] = await place(page, 0.5, 0.95);
@@ -193,10 +215,10 @@ test("by touch", { skip }, async (t) => {
 });
 
 test("two users at once", { skip }, async (t) => {
-  const server = await serve(t, folder());
+  const { address } = await server();
   const [one, two] = await Promise.all([
-    open(t, await browse(t), server.address),
-    open(t, await browse(t), server.address),
+    open(t, await browse(t), address),
+    open(t, await browse(t), address),
   ]);
   for (const [page, strokes] of [
     [one, STROKES.slice(0, 2)],
@@ -237,11 +259,11 @@ test("a killed server loses no stroke", { skip }, async (t) => {
 });
 
 test("who is not let in, and files that are none", { skip }, async (t) => {
-  const server = await serve(t, folder());
+  const { address } = await server();
   const browser = await browse(t);
-  const page = await open(t, browser, server.address);
+  const page = await open(t, browser, address);
   const wrong = await browser.newPage();
-  const answer = await wrong.goto(server.address.replace(/\/[^/]+\/$/, "/wrong-token/"));
+  const answer = await wrong.goto(address.replace(/\/[^/]+\/$/, "/wrong-token/"));
   assert.equal(answer.status(), 403);
   assert.match(await wrong.locator("body").innerText(), /token/);
 
@@ -265,13 +287,13 @@ test("who is not let in, and files that are none", { skip }, async (t) => {
       s.onerror = () => done("refused");
     });
     return { asked, read, socket };
-  }, server.address);
+  }, address);
   assert.deepEqual(tried, { asked: "refused", read: "refused", socket: "refused" });
   // The browser hides answers by itself, so the server is asked directly, as a browser asks for that page.
   const origin = `http://127.0.0.1:${foreign.address().port}`;
-  assert.equal(await status(`${server.address}start`, {}), 200);
-  assert.equal(await status(`${server.address}start`, { origin }), 403);
-  assert.equal(await status(`${server.address}start`, { "sec-fetch-site": "cross-site" }), 403);
+  assert.equal(await status(`${address}start`, {}), 200);
+  assert.equal(await status(`${address}start`, { origin }), 403);
+  assert.equal(await status(`${address}start`, { "sec-fetch-site": "cross-site" }), 403);
 
   await page.locator("#open").click();
   await page

@@ -13,7 +13,8 @@ const KEYS: [string, string][] = [
   ["Photo: Space", "start and end a stroke (Escape: no stroke)"],
   ["Photo: Enter", "a dot"],
   ["Photo: + and −", "zoom"],
-  ["Room: arrow keys, + and −", "turn and move the view"],
+  ["Room: arrow keys", "turn the view; with another tool, choose the ceiling, or shift, turn or size the lamps"],
+  ["Room: + and −", "move the view"],
   ["Room: Home", "the room's own view"],
 ];
 

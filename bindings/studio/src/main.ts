@@ -8,6 +8,7 @@ import "./style_base.css";
 import "./style_layout.css";
 import "./style_views.css";
 import "./style_panels.css";
+import "./style_stylise.css";
 import "./style_windows.css";
 
 const SESSION_KEY = "luxfer-studio-session";

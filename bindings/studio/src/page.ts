@@ -16,6 +16,7 @@ import type { Project, Store, Stroke } from "./project";
 import { RoomTools } from "./room_tools";
 import { RoomView } from "./room_view";
 import { TOOLS, type Tool } from "./strokes";
+import { Stylise } from "./stylise";
 import { shiftBy } from "./surface";
 import { Trade } from "./trade";
 
@@ -29,6 +30,9 @@ const STAGES: Record<string, string> = {
   plan: "planning",
 };
 
+/** Stages of the other tab; the last one ends its work. */
+const OF_STYLISE = new Set(["guides", "painting", ""]);
+
 /** What belongs to a room and means nothing in another one. */
 const EMPTY_ROOM = { surface: null, zones: [], mix: {}, lux_plane: { surface: null, height: 0.75 }, camera: null };
 
@@ -41,6 +45,7 @@ export class Page {
   readonly pattern = new PatternForm();
   readonly trade = new Trade();
   readonly lux = new LuxPanel();
+  readonly stylise: Stylise;
   readonly connection: Connection;
   private draft: Stroke | null = null;
   private compare = "off";
@@ -54,11 +59,14 @@ export class Page {
     readonly start: Start,
   ) {
     this.connection = new Connection(store.session);
+    this.stylise = new Stylise(store.session);
+    this.stylise.send = (message) => this.connection.say(message);
     this.connection.current = () => ({ project: this.withDraft(), compare: this.compare, draft: false });
     this.connection.onMessage = (message, payload) => this.take(message, payload);
     this.connection.onState = (isUp) => this.connected(isUp);
     store.onChange = (what) => this.changed(what);
     this.tools();
+    this.tabs();
     this.listen();
     this.show();
     this.connection.open();
@@ -179,8 +187,7 @@ export class Page {
     };
     onKeys({
       ...Object.fromEntries(TOOLS.map(({ tool }, i) => [String(i + 1), () => this.choose(tool)])),
-      "ctrl+z": () => this.store.undo(),
-      "Ctrl+z": () => this.store.undo(),
+      "Ctrl+z": () => (this.isStylising ? this.stylise.undo() : this.store.undo()),
       "Ctrl+Shift+z": () => this.store.redo(),
       "Ctrl+y": () => this.store.redo(),
       "Ctrl+o": () => void opener.show(),
@@ -211,6 +218,33 @@ export class Page {
         return make("label", { title: `${hint} (${index + 1})` }, input, swatch, label);
       }),
     );
+  }
+
+  /** Light and Stylise: one of both parts of the page is shown. */
+  private tabs(): void {
+    const tabs = [byId("tab-light"), byId("tab-stylise")];
+    const parts = [byId("light"), byId("stylise")];
+    const choose = (chosen: number) => {
+      if (chosen === 0 && this.isStylising) this.send(false); // its work goes on
+      tabs.forEach((tab, i) => {
+        tab.setAttribute("aria-selected", String(i === chosen));
+        tab.tabIndex = i === chosen ? 0 : -1;
+        parts[i].hidden = i !== chosen;
+      });
+      this.stylise.show(chosen === 1);
+    };
+    tabs.forEach((tab, i) => {
+      tab.onclick = () => choose(i);
+      tab.onkeydown = (event) => {
+        if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+        choose(1 - i);
+        tabs[1 - i].focus();
+      };
+    });
+  }
+
+  private get isStylising(): boolean {
+    return !byId("stylise").hidden;
   }
 
   private choose(tool: Tool): void {
@@ -247,7 +281,10 @@ export class Page {
 
   private connected(isUp: boolean): void {
     document.body.classList.toggle("down", !isUp);
-    if (isUp) return hideNotice();
+    if (isUp) {
+      this.stylise.connected();
+      return hideNotice();
+    }
     notice(
       "The studio has ended. Your strokes are kept in this browser: " +
         "start it again and open the address that it prints.",
@@ -283,20 +320,23 @@ export class Page {
         this.trade.setPlan(message);
         this.store.note({ plan: message.plan });
       },
-      working: () =>
-        this.busy(
-          message.stage === "render" || message.stage === "plan"
-            ? ""
-            : `${STAGES[message.stage] ?? message.stage}…`,
-        ),
+      working: () => this.takeWorking(message.stage),
       idle: () => {
         this.busy("");
         document.body.dataset.idle = String(message.version);
       },
       failed: () => this.fail(message),
+      artwork: () => this.stylise.takeArtwork(message, payload),
+      painting: () => this.stylise.takePainting(message, payload),
+      "not-painted": () => this.stylise.fail(message.message),
     };
     document.body.dataset.last = message.type;
     on[message.type]?.();
+  }
+
+  private takeWorking(stage: string): void {
+    if (OF_STYLISE.has(stage)) return this.stylise.takeWorking(stage);
+    this.busy(stage === "render" || stage === "plan" ? "" : `${STAGES[stage] ?? stage}…`);
   }
 
   private fail(message: Message): void {

@@ -156,6 +156,23 @@ class Studio:
         except RecursionError:
             return problem("the project is nested too deeply")
 
+    async def put_artwork(self, request: Request) -> Response:
+        """POST artwork?session=&sheet=: receives an artwork of the ball, or with sheet=1 a photo of the painted sheet;
+        sends it as it lies on the ball."""
+        session = self.sessions.get(request.query_params.get("session", ""))
+        if session is None:
+            return problem("there is no such session", 404)
+        data = await body(request, MAX_UPLOAD)
+        if data is None:
+            return problem(f"the artwork is larger than {MAX_UPLOAD >> 20} MiB", 413)
+        try:
+            is_sheet = request.query_params.get("sheet") == "1"
+            await run_in_threadpool(session.painter.take_artwork, data, is_sheet)
+        except (luxfer.Error, projects.Invalid) as error:
+            return problem(f"the artwork cannot be used: {projects.message(error)}")
+        assert session.painter.own is not None
+        return Response(session.painter.shown(session.painter.own), media_type="application/octet-stream")
+
     async def get_room(self, request: Request) -> Response:
         """GET room.glb?session=: sends the room before it is lit, for the page's own 3D view."""
         session = self.sessions.get(request.query_params.get("session", ""))
@@ -216,6 +233,7 @@ class Studio:
             session.listeners.remove(listen)
             if not session.listeners:
                 session.work.stop()  # nobody looks at it
+                session.painter.work.stop()
             speaker.cancel()
 
     def app(self) -> Starlette:
@@ -225,6 +243,7 @@ class Studio:
                 Route("/files", self.put_file, methods=["POST"]),
                 Route("/files", self.get_files, methods=["GET"]),
                 Route("/projects", self.put_project, methods=["POST"]),
+                Route("/artwork", self.put_artwork, methods=["POST"]),
                 Route("/room.glb", self.get_room),
                 Route("/out/{kind}", self.get_out),
                 WebSocketRoute("/ws", self.talk),

@@ -1,7 +1,7 @@
 """One user: the current project, its results, and the connections to the page.
 
 The page sends its whole project at every change, so that nothing is lost if the page or the server ends. Two threads
-work on it: one computes the masks while strokes are painted, the other lights the room.
+work on it: one computes the masks while strokes are painted, the other lights the room. A third one stylises.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any
 
 import luxfer
 
-from . import measure, pictures, results
+from . import measure, painting, pictures, results
 from . import project as projects
 from .files import Files
 from .jobs import Latest
@@ -60,11 +60,13 @@ class Session:
         self.light: Light | None = None
         self.live: Latest[Wanted] = Latest("studio-live", self._paint, self._failed)
         self.work: Latest[Wanted] = Latest("studio-work", self._work, self._failed)
+        self.painter = painting.Painter(context, self.send, self._not_painted)
 
     def close(self) -> None:
         """Ends the threads and releases the library's objects."""
         self.live.close()
         self.work.close()
+        self.painter.close()
         self.light = self.small = self._photo = self._room = None
 
     # -- the page
@@ -80,6 +82,9 @@ class Session:
             raise projects.Invalid("a message is an object")
         if message.get("type") == "expose":
             self.expose(message.get("exposure"))
+        elif message.get("type") == "paint":
+            self.painter.ask(message)
+            self.work.stop()  # the processors are for the tab that is shown, which sends its state when it returns
         else:
             self.edit(message)
 
@@ -216,6 +221,10 @@ class Session:
         self._save(wanted)  # with the settings that the plan has chosen
         self.send("idle", version=wanted.version)
 
+    def _not_painted(self, failure: Exception) -> None:
+        """Sends an error of the stylisation to the page."""
+        self.send("not-painted", message=projects.message(failure))
+
     def _failed(self, failure: Exception) -> None:
         """Sends the error to the page, which asks for a missing file."""
         header = projects.failure(failure)
@@ -226,6 +235,8 @@ class Session:
     def out(self, kind: str, folder: Path) -> Path:
         """Writes a file of results into a folder and returns its path; raises NotReady if the results are missing or
         belong to an older state of the project."""
+        if kind in painting.RESULTS:
+            return self.painter.out(kind, folder)
         wanted, light = self.wanted, self.light
         if wanted is None or light is None:
             raise luxfer.errors.NotReady("there is no result yet")
