@@ -15,7 +15,7 @@ from unittest import mock
 from support import Case, context, demo, luxfer, np
 
 from luxfer.cli.plane import above_floor
-from luxfer.studio import files, light, program, project, results, security
+from luxfer.studio import files, light, painting, pictures, program, project, results, security
 from luxfer.studio.light import Light
 from luxfer.studio.room import work_plane
 from luxfer.studio.results import ENDINGS
@@ -169,8 +169,67 @@ class Results(Case):
                 self.session.hello()
             seen.append(header["type"])
 
-        self.edit(greet)
+        self.edit(greet, until="picture")
         self.assertIn("picture", seen)
+
+
+class Stylised(Case):
+    """The stylisation, at a small size."""
+
+    def setUp(self):
+        super().setUp()
+        for name, value in (("SIZE", (80, 60)), ("SHEET_SIZE", (160, 120)), ("SAMPLES", 2), ("SHEET_SAMPLES", 1)):
+            patch = mock.patch.object(painting, name, value)
+            patch.start()
+            self.addCleanup(patch.stop)
+        self.messages, self.failures, self.done = [], [], threading.Event()
+        self.painter = painting.Painter(context(), self.take, self.fail_later)
+        self.addCleanup(self.painter.close)
+
+    def take(self, kind, payload=b"", **header):
+        self.messages.append((kind, header, payload))
+        if kind == "painting" and header["done"]:
+            self.done.set()
+
+    def fail_later(self, failure):
+        self.failures.append(failure)
+        self.done.set()
+
+    def paint(self, artwork):
+        """Waits for the picture and returns its header."""
+        self.done.clear()
+        self.painter.ask({"artwork": artwork})
+        self.assertTrue(self.done.wait(120))
+        self.assertEqual(self.failures, [])
+        return self.messages[-2][1]
+
+    def test_the_picture_follows_the_artwork(self):
+        first = self.paint("pen")
+        self.assertEqual([kind for kind, _, _ in self.messages if kind != "working"], ["artwork", *["painting"] * 2])
+        self.assertNotEqual(first["digest"], self.paint("paint")["digest"])
+        # The printed sheet, photographed, is the ball again: grey and pale, in the shape of the picture.
+        sheet = self.painter.out("sheet", self.folder)
+        self.painter.take_artwork(sheet.read_bytes(), True)
+        self.assertEqual(self.painter.own.size[:2], (80, 60))
+        self.assertGreater(float(self.painter.own.numpy().min()), 0.2)
+        own = self.paint("own")
+        picture = luxfer.Image.load(context(), self.painter.out("painting", self.folder))
+        self.assertEqual(pictures.digest(self.painter.painted), own["digest"])
+        self.assertEqual(picture.size[:2], (80, 60))
+
+    def test_what_is_no_artwork_says_what_to_do(self):
+        for message, text in (({"artwork": "own"}, "open one"), ({"artwork": "oil"}, "'oil'"), ({}, "None")):
+            with self.assertRaisesRegex(project.Invalid, text):
+                self.painter.ask(message)
+        square = self.folder / "square.png"
+        luxfer.Image(context(), np.ones((50, 50, 3), np.float32)).save(square)
+        with self.assertRaisesRegex(project.Invalid, "crop it to this shape"):
+            self.painter.take_artwork(square.read_bytes(), False)
+        with self.assertRaises(luxfer.Error):  # a picture without the marks of a sheet
+            self.painter.take_artwork(square.read_bytes(), True)
+        with self.assertRaises(luxfer.errors.NotReady):
+            self.painter.out("painting", self.folder)
+        self.assertIsNone(self.painter.own)
 
 
 class Programs(Case):

@@ -56,6 +56,19 @@ function sizeOfExr(data) {
   return [right - left + 1, bottom - top + 1];
 }
 
+/** The codes of all warnings of the library. */
+function warningCodes() {
+  const text = readFileSync(new URL("../../bindings/python/luxfer/types.py", import.meta.url), "utf8");
+  const body = /class WarningCode\(IntEnum\):(.*?)\nclass /s.exec(text)[1];
+  return [...body.matchAll(/^    ([A-Z_]+) = \d+$/gm)].map((found) => found[1]);
+}
+
+/** Warnings whose advice by the library names functions, settings or matrices. */
+const OF_PROGRAMS = new Set(
+  ("FOCAL_ASSUMED VIEW_UNCERTAIN LAYOUT_UNCERTAIN PATTERN_UNCERTAIN NO_LATTICE NO_PATTERN UNREACHABLE MISSED_STROKES " +
+    "IMPLAUSIBLE_SIZE FAR_FROM_ORIGIN").split(" "),
+);
+
 /** Paints the three strokes, each of which changes the masks. */
 async function paintAll(page) {
   for (const [tool, ...places] of STROKES) {
@@ -170,6 +183,152 @@ test("by keys alone", { skip }, async (t) => {
   for (let i = 0; i < 5; i++) await page.keyboard.press("ArrowLeft");
   await changed(page, "mean", mean);
   assert.deepEqual(page.problems, []);
+});
+
+/** What the page says of the illuminance, once it has another value. */
+async function otherLux(page, before) {
+  const mean = () => page.evaluate(() => document.getElementById("lux").dataset.mean);
+  await page.waitForFunction((before) => document.getElementById("lux").dataset.mean !== before, before ?? "");
+  return mean();
+}
+
+test("the lamps by hand: shift, turn, size, mix, mean, and another ceiling", { skip }, async (t) => {
+  const { address } = await server();
+  const page = await open(t, await browse(t), address);
+  const offset = async () => [await page.locator("#across").inputValue(), await page.locator("#along").inputValue()];
+  assert.deepEqual(await offset(), ["0", "0"]);
+
+  // On the plan: the drag is a shift by its metres, 6 m over the width of the ceiling.
+  const plan = await page.locator("#lamp-plan").boundingBox();
+  let texture = await state(page, "texture");
+  await page.mouse.move(plan.x + plan.width / 2, plan.y + plan.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(plan.x + 0.6 * plan.width, plan.y + plan.height / 2, { steps: 3 });
+  await page.mouse.up();
+  texture = await changed(page, "texture", texture);
+  const [across, along] = (await offset()).map(Number);
+  assert.ok(Math.abs(across - 0.6) < 0.03 && Math.abs(along) < 0.03, `${across}, ${along}`);
+
+  // On the ceiling in the room, and by keys.
+  const room = await page.locator("#room").boundingBox();
+  await page.locator("label:has(#room-tool-shift)").click();
+  await page.mouse.move(room.x + 0.4 * room.width, room.y + 0.1 * room.height);
+  await page.mouse.down();
+  await page.mouse.move(room.x + 0.5 * room.width, room.y + 0.1 * room.height, { steps: 3 });
+  await picture(page, "6-shift");
+  await page.mouse.up();
+  texture = await changed(page, "texture", texture);
+  assert.notDeepEqual((await offset()).map(Number), [across, along]);
+  await page.locator("label:has(#room-tool-turn)").click();
+  await page.locator("#room").focus();
+  await page.keyboard.press("ArrowRight");
+  texture = await changed(page, "texture", texture);
+  assert.equal(await page.locator("#turn").inputValue(), "1");
+  await page.locator("label:has(#room-tool-size)").click();
+  await page.locator("#room").focus();
+  await page.keyboard.press("ArrowUp");
+  texture = await changed(page, "texture", texture);
+  assert.equal(await page.locator("#scale").inputValue(), "lamp");
+  for (let i = 0; i < 4; i++) await page.locator("#undo").click();
+  assert.deepEqual(await offset(), ["0", "0"]);
+  await changed(page, "texture", texture);
+
+  // Light: a kind at half, then the wanted mean.
+  const full = await otherLux(page);
+  await page.locator(".dimmer input").first().fill("50");
+  const dimmed = await otherLux(page, full);
+  assert.ok(Number(dimmed) < 0.95 * Number(full), `${full} to ${dimmed} lx`);
+  await page.locator("#lux-wish").fill("400");
+  await page.locator("#lux-bring").click();
+  const brought = await otherLux(page, dimmed);
+  assert.ok(Math.abs(Number(brought) - 400) < 8, `${brought} lx`);
+  await page.selectOption("#lux-plane", { label: "Table" });
+  await otherLux(page, brought);
+  assert.match(await page.locator("#lux").innerText(), /On the front of Table/);
+
+  // A click on another candidate makes it the ceiling.
+  await page.locator("label:has(#room-tool-choose)").click();
+  await picture(page, "7-candidates");
+  await page.locator("#room").focus();
+  await page.keyboard.press("ArrowRight");
+  assert.notEqual(await page.locator("#surface").inputValue(), "Ceiling");
+  await page.mouse.click(room.x + 0.4 * room.width, room.y + 0.06 * room.height);
+  assert.match(await page.locator("#surface").inputValue(), /Ceiling|White plaster/);
+  assert.deepEqual(page.problems, []);
+});
+
+test("stylise: what is painted on the ball is painted on the picture", { skip }, async (t) => {
+  const { address } = await server();
+  const browser = await browse(t);
+  const page = await open(t, browser, address);
+  await page.locator("#tab-light").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => document.body.dataset.painting);
+  const before = await state(page, "painting");
+  const box = await page.locator("#artwork").boundingBox();
+  await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.4 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.5 * box.height, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction((b) => document.body.dataset.painting && document.body.dataset.painting !== b, before);
+  assert.ok(await page.locator("#artwork-own").isChecked());
+  await picture(page, "8-stylise");
+  for (const width of [1440, 390]) {
+    await page.setViewportSize({ width, height: 800 });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, `at ${width} pixels the page is ${wide} wide`);
+  }
+  const [file] = await Promise.all([page.waitForEvent("download"), page.locator("#out-painting").click()]);
+  assert.equal(readFileSync(await file.path()).subarray(1, 4).toString(), "PNG");
+  await page.locator("#artwork-file").setInputFiles({ name: "a.png", mimeType: "image/png", buffer: Buffer.from("x") });
+  await page.locator("#notice-text", { hasText: "the artwork cannot be used" }).waitFor();
+  assert.deepEqual(
+    page.problems.filter((p) => !/400/.test(p)),
+    [],
+  );
+  // The artwork is still there after the page has been loaded anew.
+  await page.reload();
+  await page.waitForFunction(() => document.getElementById("artwork-own")?.checked);
+});
+
+test("every warning of the library is shown, with what to do here", { skip }, async (t) => {
+  const { address } = await server();
+  const page = await (await browse(t)).newPage();
+  const codes = warningCodes();
+  let give = null;
+  await page.routeWebSocket(/\/ws/, (socket) => {
+    socket.connectToServer().onMessage((message) => {
+      const header = JSON.parse(message.subarray(4, 4 + message.readUInt32LE(0)).toString());
+      if (!["warnings", "doubt", "room"].includes(header.type)) socket.send(message);
+    });
+    give = (header) => {
+      const text = Buffer.from(JSON.stringify(header));
+      const size = Buffer.alloc(4);
+      size.writeUInt32LE(text.length);
+      socket.send(Buffer.concat([size, text]));
+    };
+  });
+  await page.goto(address);
+  await page.waitForFunction(() => document.body.dataset.last);
+  const list = codes.map((code, i) => ({
+    code,
+    stage: "lights",
+    message: `message of ${code}`,
+    advice: "call luxfer_own_advice",
+    at: [5 * i, 10],
+  }));
+  give({ type: "warnings", list });
+  await page.locator("#notes", { hasText: `Message of ${codes.at(-1)}` }).waitFor();
+  const shown = await page.locator("#notes").innerText();
+  for (const code of codes.filter((c) => c !== "PROPOSED"))
+    assert.ok(shown.includes(`Message of ${code}`), `no note of ${code}`);
+  assert.match(shown, /Proposal/);
+  assert.equal(await page.locator("#notes-count").innerText(), String(codes.length));
+  // Every advice that speaks of functions or settings has one for this page.
+  for (const code of codes.filter((c) => OF_PROGRAMS.has(c))) {
+    const note = page.locator("#notes li", { hasText: new RegExp(`Message of ${code}\\.`) });
+    assert.ok(!(await note.innerText()).includes("luxfer_own_advice"), `the advice of ${code} is for programs`);
+  }
 });
 
 test("windows of any size, light and dark", { skip }, async (t) => {

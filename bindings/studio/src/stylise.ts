@@ -11,7 +11,8 @@ const EXAMPLES: [string, string][] = [
   ["pen", "Pen"],
   ["stipple", "Stippled"],
 ];
-const KEPT = "luxfer-studio-artwork/";
+/** Where the browser keeps the latest artwork of the user, of any tab. */
+const KEPT = "luxfer-studio-artwork";
 const MAX_UNDO = 30;
 
 export class Stylise {
@@ -106,14 +107,14 @@ export class Stylise {
   /** Keeps the user's artwork in the browser, where it survives the server. */
   private store(): void {
     try {
-      localStorage.setItem(KEPT + this.session, this.art.toDataURL());
+      localStorage.setItem(KEPT, this.art.toDataURL());
     } catch {
       // the browser has no room left: the artwork is on the page only
     }
   }
 
   private restore(): void {
-    const kept = localStorage.getItem(KEPT + this.session);
+    const kept = localStorage.getItem(KEPT);
     if (!kept) return;
     const image = new Image();
     image.onload = () => {
