@@ -318,8 +318,20 @@ def serve(asked: argparse.Namespace) -> int:
             f"the page of the studio has not been built ({STATIC} is empty): run `make studio` first", file=sys.stderr
         )
         return Exit.FAILED
+    for folder in asked.folder:
+        if not folder.is_dir():
+            print(f"luxfer studio: --folder: there is no folder {folder}", file=sys.stderr)
+            return Exit.UNREADABLE
+    state = asked.state or state_folder()
     try:
-        files = Files(asked.state or state_folder(), Allowed(asked.folder))
+        files = Files(state, Allowed(asked.folder))
+    except OSError as error:
+        print(
+            f"luxfer studio: --state: {state} cannot keep files: {error.strerror or error}; name another folder",
+            file=sys.stderr,
+        )
+        return Exit.FAILED
+    try:
         first, kept = first_project(asked, files)
     except (OSError, projects.Invalid) as error:
         print(f"luxfer studio: {error}", file=sys.stderr)
