@@ -182,6 +182,9 @@ class Door(Case):
             ("photo.png", (self.root / "open" / "photo.png").read_bytes()[:200], "photo.png cannot be read"),
             ("room.glb", b"glTF nothing", "room.glb cannot be read"),
             ("notes.txt", b"hello", "is no photo"),
+            ("IMG_1.HEIC", b"x", "save it as JPEG"),
+            ("room.fbx", b"x", "export it as .glb"),
+            ("room.usdz", b"x", "import it into Blender"),
             ("photo.jpg", b"", "is empty"),
         ):
             status, _, answer = self.server.get(f"{self.server.token}/files?name={name}", content)

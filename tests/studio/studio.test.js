@@ -460,4 +460,22 @@ test("who is not let in, and files that are none", { skip }, async (t) => {
     .setInputFiles({ name: "broken.jpg", mimeType: "image/jpeg", buffer: Buffer.from("no photo") });
   await page.locator("#notice-text", { hasText: "broken.jpg cannot be read" }).waitFor();
   assert.equal(await state(page, "strokes"), "0");
+
+  // A photo that shows nothing: what to do is said, the picture is marked, and nothing is lost.
+  const grey = await page.evaluate(() => {
+    const canvas = Object.assign(document.createElement("canvas"), { width: 300, height: 200 });
+    canvas.getContext("2d").fillStyle = "#888";
+    canvas.getContext("2d").fillRect(0, 0, 300, 200);
+    return canvas.toDataURL().split(",")[1];
+  });
+  await page.locator("#open").click();
+  await page
+    .locator("#files")
+    .setInputFiles({ name: "grey.png", mimeType: "image/png", buffer: Buffer.from(grey, "base64") });
+  await page.locator("#notes", { hasText: "use a photo that shows straight edges" }).waitFor();
+  assert.match(await page.locator("body").getAttribute("class"), /stale/);
+  await picture(page, "9-nothing");
+  await page.locator("#undo").click();
+  await page.waitForFunction(() => !document.body.classList.contains("stale"));
+  assert.match(await page.locator("#names").innerText(), /office\.png/);
 });

@@ -35,14 +35,14 @@ export function showKeys(): void {
 }
 
 /** Calls the action of a key, unless somebody types. */
-export function onKeys(actions: Record<string, () => void>): void {
+export function onKeys(actionOf: (key: string) => (() => void) | undefined): void {
   document.addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
     const isText = target instanceof HTMLInputElement && ["number", "text"].includes(target.type);
     if (isText || target instanceof HTMLSelectElement || document.querySelector("dialog[open]")) return;
     const control = event.ctrlKey || event.metaKey;
     const name = `${control ? "Ctrl+" : ""}${control && event.shiftKey ? "Shift+" : ""}${event.key.toLowerCase()}`;
-    const action = actions[name];
+    const action = actionOf(name);
     if (!action || event.altKey) return;
     event.preventDefault();
     action();

@@ -103,6 +103,7 @@ export class Page {
     byId<HTMLButtonElement>("undo").disabled = !this.store.canUndo;
     byId<HTMLButtonElement>("redo").disabled = !this.store.canRedo;
     byId("names").textContent = `${project.photo.name} → ${project.room?.name ?? "generated room"}`;
+    this.hint();
     document.body.dataset.strokes = String(project.strokes.length);
   }
 
@@ -185,9 +186,9 @@ export class Page {
       input.value = String(Number(input.value) + by);
       this.photo.setBrush(Number(input.value));
     };
-    onKeys({
+    const light: Record<string, () => void> = {
       ...Object.fromEntries(TOOLS.map(({ tool }, i) => [String(i + 1), () => this.choose(tool)])),
-      "Ctrl+z": () => (this.isStylising ? this.stylise.undo() : this.store.undo()),
+      "Ctrl+z": () => this.store.undo(),
       "Ctrl+Shift+z": () => this.store.redo(),
       "Ctrl+y": () => this.store.redo(),
       "Ctrl+o": () => void opener.show(),
@@ -196,7 +197,10 @@ export class Page {
       m: tick("show-masks"),
       g: tick("show-grid"),
       v: tick("show-lines"),
-      "?": showKeys,
+    };
+    onKeys((key) => {
+      if (key === "?") return showKeys;
+      return this.isStylising ? { "Ctrl+z": () => this.stylise.undo() }[key] : light[key];
     });
   }
 
@@ -231,6 +235,7 @@ export class Page {
         tab.tabIndex = i === chosen ? 0 : -1;
         parts[i].hidden = i !== chosen;
       });
+      document.body.classList.toggle("stylising", chosen === 1);
       this.stylise.show(chosen === 1);
     };
     tabs.forEach((tab, i) => {
@@ -251,6 +256,14 @@ export class Page {
     byId<HTMLInputElement>(`tool-${tool}`).checked = true;
     this.photo.tool = tool;
     this.photo.redraw();
+    this.hint();
+  }
+
+  /** What a stroke of the tool says, until the user has painted. */
+  private hint(): void {
+    const { tool, label, hint } = TOOLS.find((t) => t.tool === this.photo.tool)!;
+    byId("hint").textContent = tool === "remove" ? `${label}: click ${hint}` : `${label}: paint ${hint}`;
+    byId("hint").hidden = this.store.project.strokes.length > 0 && tool !== "remove";
   }
 
   private open(project: Project, isWhole = false): void {
@@ -323,6 +336,7 @@ export class Page {
       working: () => this.takeWorking(message.stage),
       idle: () => {
         this.busy("");
+        document.body.classList.remove("stale");
         document.body.dataset.idle = String(message.version);
       },
       failed: () => this.fail(message),
@@ -342,6 +356,7 @@ export class Page {
   private fail(message: Message): void {
     this.busy("");
     document.body.dataset.idle = "failed";
+    document.body.classList.add("stale");
     if (message.missing) {
       notice(`${message.message}: drop it on the page, or choose it.`, {
         label: "Choose it",
@@ -424,6 +439,7 @@ export class Page {
   private takePicture(message: Message, rgb: Uint8Array): void {
     if (message.which === "after") {
       this.autoExposure = message.exposure;
+      document.body.classList.remove("stale");
       this.trade.setPicture(message);
       const error = message.noise ?? message.bias;
       const stated = error === null ? "" : `, stated error ${percent(error)}`;

@@ -39,6 +39,14 @@ MAX_SESSIONS = 8
 MAX_PROJECT = 16 << 20
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
 ROOMS = {".glb", ".gltf"}
+#: What to do about a file of another kind, by the ending of its name.
+EXPORT = ": export it as .glb from the program that made it"
+CONVERSIONS = {
+    **dict.fromkeys((".heic", ".heif", ".avif"), ": save it as JPEG (on an iPhone: Camera > Formats > Most Compatible)"),
+    **dict.fromkeys((".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf"), ": develop it to JPEG or TIFF in a photo program"),
+    **dict.fromkeys((".blend", ".fbx", ".obj", ".skp", ".3ds", ".max", ".dae", ".stl", ".ifc", ".rvt"), EXPORT),
+    **dict.fromkeys((".usd", ".usda", ".usdc", ".usdz"), ": import it into Blender and export it as .glb"),
+}
 
 
 class Studio:
@@ -98,11 +106,12 @@ class Studio:
             return problem(f"the file is larger than {MAX_UPLOAD >> 20} MiB", 413)
         name = request.query_params.get("name", "file")
         if not data:
-            return problem(f"{name} is empty")
+            return problem(f"{name} is empty: copy it anew from where it comes from, and open it again")
         suffix = Path(name).suffix.lower()
         if suffix not in PHOTOS | ROOMS:
             return problem(
                 f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (glTF: .glb, .gltf)"
+                f"{CONVERSIONS.get(suffix, '')}"
             )
         try:
             await run_in_threadpool(self.try_file, data, suffix)
@@ -120,7 +129,9 @@ class Studio:
         if suffix in ROOMS:
             scene = luxfer.Scene.from_bytes(self.context, data, folder)
             if not scene.candidates:
-                raise luxfer.errors.Degenerate("it has no surface that could receive lights")
+                raise luxfer.errors.Degenerate(
+                    "it has no surface that could receive lights: model its ceiling as a flat object, and export it again"
+                )
         else:
             luxfer.Image.from_bytes(self.context, data)
 

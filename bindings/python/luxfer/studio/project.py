@@ -168,7 +168,7 @@ FIELDS = {
 def checked(value: Any) -> Project:
     """Checks a project, and adds missing entries; raises Invalid if an entry is wrong."""
     if not isinstance(value, dict) or value.get("luxfer_studio") != FORMAT:
-        raise Invalid("this is not a project of luxfer studio")
+        raise Invalid("this is not a project of luxfer studio: open a file that Keep the result > Project has saved")
     if unknown := set(value) - set(DEFAULTS):
         raise Invalid(f"the project has an unknown entry: {min(unknown)}")
     merged = {**DEFAULTS, **value}
