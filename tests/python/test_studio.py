@@ -225,7 +225,7 @@ class Work(Case):
             {"kind": kind, "radius": 2.5, "points": [c for x, y in places for c in (x * width, y * height)]}
             for kind, places in STROKES
         ]
-        return {**server.json("start")["project"], "strokes": strokes, "noise": 1.0, "mix": {"1": 0.5}}
+        return {**server.json("start")["project"], "strokes": strokes, "noise": 1.0, "mix": {"1": 0.5}, "added": [[1, 3, 2]]}
 
     def test_a_project_gives_the_same_again(self):
         server = self.serve(self.photo)
@@ -337,6 +337,7 @@ class Parts(Case):
             {"pattern": {"scale": "distance"}},
             {"mix": {"A": 1}},
             {"mix": {"1": -0.1}},
+            {"added": [[1, 2]]},
             {"lux_plane": {"surface": None, "height": -1}},
         ):
             with self.assertRaises(project.Invalid, msg=str(wrong)):

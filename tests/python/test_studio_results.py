@@ -153,6 +153,35 @@ class Results(Case):
         self.edit(last, white=200.0, lux_plane={"surface": "no such", "height": 0.75}, until="lux")
         self.assertIn("Choose another plane", seen["lux"]["problem"])
 
+    def test_an_added_lamp_is_in_the_room_and_in_its_schedule(self):
+        seen = {}
+
+        def last(header):
+            seen[header["type"]] = header
+
+        self.edit(last, until="lux")
+        before, mean = seen["lamps"]["list"], seen["lux"]["mean"]
+        plain = self.out("csv")
+        kind = before[0]["kind"]
+        added = [[kind, 3.0, 2.0], [99, 1.0, 1.0]]  # there is no kind 99
+        self.edit(last, added=added, until="lux")
+        after = seen["lamps"]["list"]
+        self.assertEqual(after[: len(before)], before)
+        self.assertEqual([lamp["added"] for lamp in after[len(before) :]], [0])
+        model = max((lamp for lamp in before if lamp["kind"] == kind), key=lambda lamp: lamp["flux"])
+        place = self.session.light.room.find_surface("Ceiling")
+        at = np.subtract(after[-1]["position"], place.origin)
+        self.assertAlmostEqual(float(at @ np.array(place.u_axis)), 3.0, places=4)
+        self.assertAlmostEqual(float(at @ np.array(place.v_axis)), 2.0, places=4)
+        total = sum(lamp["flux"] for lamp in before)
+        self.assertGreater(seen["lux"]["mean"], mean * (1 + 0.5 * model["flux"] / total))
+        rows = self.out("csv").decode().splitlines()
+        self.assertEqual(rows[:-1], plain.decode().splitlines())
+        self.assertAlmostEqual(float(rows[-1].split(",")[0]), after[-1]["position"][0], places=4)
+        outlines = [lamp["outline_m"] for lamp in json.loads(self.out("json"))["fixtures"]]
+        middle = np.mean(outlines[-1], axis=0)
+        self.assertLess(float(np.abs(middle - after[-1]["position"]).max()), 0.1)
+
     def test_a_turned_texture_is_mapped_to_the_surface(self):
         seen = {}
         pattern = {**self.project["pattern"], "rotation": 0.5}
@@ -258,6 +287,11 @@ class Programs(Case):
         self.assertIn(f"transfer.set_zones({zones})", text)
         self.assertIn(f"without(mask, {removed}, ", text)
         self.assertNotIn("without(", self.text(zones=zones))
+        for changes in ({"mix": {"1": 0.5}}, {"added": [[1, 2.0, 3.0]]}):
+            text = self.text(**changes)
+            ast.parse(text)
+            self.assertIn("mix.apply(transfer, *lamps)", text)
+        self.assertNotIn("mix", self.text(mix={"1": 1.0}))
 
     def test_a_plan_has_only_the_settings_of_a_plan(self):
         good = {"samples": 64, "target_error": 0.1, "seed": 0}

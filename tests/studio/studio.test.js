@@ -233,6 +233,18 @@ test("the lamps by hand: shift, turn, size, mix, mean, and another ceiling", { s
   assert.deepEqual(await offset(), ["0", "0"]);
   await changed(page, "texture", texture);
 
+  // A lamp is added where the plan is clicked, and taken out again.
+  const count = async () => Number(await page.locator("#lamps-count").innerText());
+  const lamps = await count();
+  await page.locator(".kind summary").first().click();
+  await page.getByRole("button", { name: "Add one" }).first().click();
+  const free = { x: 0.27 * plan.width, y: 0.4 * plan.height };
+  await page.locator("#lamp-plan").click({ position: free });
+  await page.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps + 1);
+  await picture(page, "6-added");
+  await page.locator("#lamp-plan").click({ position: free });
+  await page.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps);
+
   // Light: a kind at half, then the wanted mean.
   const full = await otherLux(page);
   await page.locator(".dimmer input").first().fill("50");

@@ -3,6 +3,7 @@
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
 import { rgbPicture } from "./masks";
+import type { Added } from "./project";
 import type { Spot } from "./room_view";
 import { dot, type Rectangle } from "./surface";
 
@@ -14,6 +15,7 @@ export interface Lamp {
   size: [number, number];
   flux: number;
   cct: number;
+  added: number | null; // which addition of the user it is
 }
 
 export type Zone = [number, number, number, number];
@@ -35,9 +37,13 @@ export class LampList {
   private error = 0;
   private fromTexture = new DOMMatrix(); // from shares of the texture to metres on the surface
   private mix: Record<string, number> = {};
+  private added: Added[] = [];
+  private isAdding = false; // the next click on the plan adds a lamp
+  private adding = 0; // and this is its kind
   private isHeld = false; // a slider is being dragged, which a new list would take away
   onMix: (mix: Record<string, number>) => void = () => {};
   onShift: (du: number, dv: number) => void = () => {};
+  onAdded: (added: Added[]) => void = () => {};
   onZones: (zones: Zone[]) => void = () => {};
   onShow: (spots: Spot[]) => void = () => {};
 
@@ -54,8 +60,9 @@ export class LampList {
     this.draw();
   }
 
-  setProject(zones: Zone[], mix: Record<string, number>): void {
+  setProject({ zones, mix, added }: { zones: Zone[]; mix: Record<string, number>; added: Added[] }): void {
     this.zones = zones;
+    this.added = added;
     this.mix = mix;
     this.draw();
   }
@@ -74,7 +81,10 @@ export class LampList {
   private takeOut(lamps: Lamp[]): void {
     if (!lamps.length) return;
     this.onShow([]);
-    this.onZones([...this.zones, ...lamps.map((l) => this.zoneOf(l))]);
+    const own = new Set(lamps.map((l) => l.added));
+    const rest = lamps.filter((l) => l.added === null);
+    if (rest.length < lamps.length) this.onAdded(this.added.filter((_, i) => !own.has(i)));
+    if (rest.length) this.onZones([...this.zones, ...rest.map((l) => this.zoneOf(l))]);
   }
 
   private draw(): void {
@@ -102,7 +112,9 @@ export class LampList {
       make(
         "p",
         { class: "quiet" },
-        `${this.lamps.length} lamps, ${short(total)} lm in all (± ${short(100 * this.error)} %)`,
+        this.isAdding
+          ? "Click the place of the new lamp in the plan."
+          : `${this.lamps.length} lamps, ${short(total)} lm in all (± ${short(100 * this.error)} %)`,
       ),
       ...order.flatMap(([kind, lamps]) => [
         this.kindBox(kind, lamps, open.has(String(kind))),
@@ -125,9 +137,31 @@ export class LampList {
         make("b", {}, title),
         ` · ${lamps.length} × ${size} · ${short(mean((l) => l.flux))} lm · ${10 * Math.round(mean((l) => l.cct) / 10)} K`,
       ),
-      make("button", { type: "button", onclick: () => this.takeOut(lamps) }, `Take all ${lamps.length} out`),
+      make(
+        "p",
+        { class: "row" },
+        make("button", { type: "button", onclick: () => this.takeOut(lamps) }, `Take all ${lamps.length} out`),
+        make("button", { type: "button", onclick: (e) => this.beginAdding(kind, e as MouseEvent) }, "Add one"),
+      ),
       make("ul", {}, ...lamps.map((lamp) => this.row(lamp))),
     );
+  }
+
+  /** The next click on the plan adds a lamp of a kind; with a key, it comes to the middle of the ceiling. */
+  private beginAdding(kind: number, event: MouseEvent): void {
+    if (event.detail === 0) {
+      const [width, height] = this.surface!.size;
+      this.add(kind, [width / 2, height / 2]);
+      return;
+    }
+    this.adding = kind;
+    this.isAdding = true;
+    this.draw();
+  }
+
+  private add(kind: number, at: [number, number]): void {
+    this.isAdding = false;
+    this.onAdded([...this.added, [kind, ...(at.map((x) => Math.round(1000 * x) / 1000) as [number, number])]]);
   }
 
   /** The share of its light that a kind gives. */
@@ -145,7 +179,8 @@ export class LampList {
       this.isHeld = false;
       this.draw();
     };
-    return make("label", { class: "dimmer" }, make("span", {}, kind ? `Light of ${letter(kind)}` : "Light"), slider, out);
+    const label = make("span", {}, kind ? `Light of ${letter(kind)}` : "Light");
+    return make("label", { class: "dimmer" }, label, slider, out);
   }
 
   private row(lamp: Lamp): HTMLElement {
@@ -180,7 +215,7 @@ export class LampList {
   /** The ceiling from below, with its texture: a click takes a lamp out or puts it back, a drag moves the pattern. */
   private plan(): HTMLElement {
     const [width, height] = this.surface!.size;
-    const canvas = make("canvas", { class: "plan", id: "lamp-plan", role: "img" });
+    const canvas = make("canvas", { class: this.isAdding ? "plan adding" : "plan", id: "lamp-plan", role: "img" });
     canvas.setAttribute("aria-label", `Plan of the ceiling, ${short(width)} by ${short(height)} metres`);
     const scale = 2 * Math.min(300 / width, 220 / height);
     canvas.width = Math.max(1, Math.round(width * scale));
@@ -254,6 +289,7 @@ export class LampList {
 
   /** Takes out the lamp at a place, or puts back what was there. */
   private toggle(at: [number, number]): void {
+    if (this.isAdding) return this.add(this.adding, at);
     const inside = ([u0, v0, u1, v1]: Zone) => at[0] >= u0 && at[0] <= u1 && at[1] >= v0 && at[1] <= v1;
     if (this.zones.some(inside)) this.onZones(this.zones.filter((z) => !inside(z)));
     else this.takeOut(this.lamps.filter((l) => inside(this.zoneOf(l))).slice(0, 1));

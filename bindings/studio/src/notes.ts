@@ -29,6 +29,7 @@ export class Notes {
   private room: Warning[] = [];
   private warnings: Warning[] = [];
   private doubt: { phase: string; at: [number, number] } | null = null;
+  private isKnown = false; // whether the library has looked at the photo
   private failure = "";
   onMarks: (marks: Mark[]) => void = () => {};
 
@@ -39,7 +40,17 @@ export class Notes {
   }
 
   setWarnings(message: Message): void {
+    this.isKnown = true;
     this.warnings = (message.list as Warning[]).filter((w) => w.stage !== "scene");
+    this.draw();
+  }
+
+  /** Forgets what was said of a photo. */
+  clear(): void {
+    this.warnings = [];
+    this.isKnown = false;
+    this.doubt = null;
+    this.failure = "";
     this.draw();
   }
 
@@ -96,7 +107,7 @@ export class Notes {
         ),
       );
     });
-    if (!items.length) items.push(item("fine", "✓", "Nothing to doubt."));
+    if (!items.length && this.isKnown) items.push(item("fine", "✓", "Nothing to doubt."));
     byId("notes").replaceChildren(...items);
     byId("notes-count").textContent = items.length > 1 || rest.length ? String(items.length) : "";
     this.onMarks(marks);

@@ -12,7 +12,7 @@ import { Opener } from "./open";
 import { showOut } from "./out";
 import { PatternForm } from "./pattern";
 import { PhotoView } from "./photo_view";
-import type { Project, Store, Stroke } from "./project";
+import { PLAIN_LAMPS, type Project, type Store, type Stroke } from "./project";
 import { RoomTools } from "./room_tools";
 import { RoomView } from "./room_view";
 import { TOOLS, type Tool } from "./strokes";
@@ -34,7 +34,7 @@ const STAGES: Record<string, string> = {
 const OF_STYLISE = new Set(["guides", "painting", ""]);
 
 /** What belongs to a room and means nothing in another one. */
-const EMPTY_ROOM = { surface: null, zones: [], mix: {}, lux_plane: { surface: null, height: 0.75 }, camera: null };
+const EMPTY_ROOM = { surface: null, ...PLAIN_LAMPS, lux_plane: { surface: null, height: 0.75 }, camera: null };
 
 export class Page {
   readonly photo = new PhotoView();
@@ -95,7 +95,7 @@ export class Page {
     this.photo.strokes = project.strokes;
     this.photo.removed = project.removed;
     this.photo.redraw();
-    this.lamps.setProject(project.zones, project.mix);
+    this.lamps.setProject(project);
     this.lux.setProject(project.lux_plane);
     this.pattern.show(project);
     this.trade.show(project.noise);
@@ -123,6 +123,7 @@ export class Page {
     };
     room.onCamera = (camera) => store.change("camera", { camera });
     this.lamps.onZones = (zones) => store.change(`zones ${zones.length}`, { zones });
+    this.lamps.onAdded = (added) => store.change(`added ${added.length}`, { added });
     this.lamps.onMix = (mix) => store.change("mix", { mix });
     this.lamps.onShift = (du, dv) =>
       store.change("shift", { pattern: shiftBy(du, dv).pattern(store.project.pattern, 0)! });
@@ -130,7 +131,7 @@ export class Page {
     this.pattern.onChange = (what, patch) => store.change(what, patch);
     this.roomTools.pattern = () => store.project.pattern;
     this.roomTools.onPattern = (what, pattern) => store.change(what, { pattern });
-    this.roomTools.onSurface = (surface) => store.change("surface", { surface, zones: [], mix: {} });
+    this.roomTools.onSurface = (surface) => store.change("surface", { surface, ...PLAIN_LAMPS });
     this.roomTools.onRefused = notice;
     this.lux.onPlane = (plane) => store.change("plane", { lux_plane: plane });
     this.lux.onFactor = (factor) => {
@@ -315,7 +316,7 @@ export class Page {
       saved: () =>
         (byId("saved").textContent =
           `Saved ${new Date().toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}`),
-      photo: () => this.photo.setPhoto(rgbPicture(message.width, message.height, payload), message.full),
+      photo: () => this.takePhoto(message, payload),
       room: () => this.takeRoom(message),
       masks: () => this.takeMasks(message, payload),
       doubt: () => this.notes.setDoubt(message),
@@ -363,6 +364,14 @@ export class Page {
         work: () => byId("open").click(),
       });
     } else this.notes.fail(String(message.message));
+  }
+
+  /** Another photo: nothing of the former one is said any more. */
+  private takePhoto(message: Message, rgb: Uint8Array): void {
+    this.photo.setPhoto(rgbPicture(message.width, message.height, rgb), message.full);
+    this.photo.lamps = [];
+    this.notes.clear();
+    byId("photo-status").textContent = "";
   }
 
   private takeRoom(message: Message): void {

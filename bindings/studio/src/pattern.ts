@@ -2,7 +2,7 @@
 
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
-import type { Pattern, Project } from "./project";
+import { PLAIN_LAMPS, type Pattern, type Project } from "./project";
 import type { Candidate } from "./room_tools";
 
 const SCALES: [Pattern["scale"], string][] = [
@@ -51,7 +51,7 @@ export class PatternForm {
       row("White of the photo", this.white, "cd/m²"),
       this.proposal,
     );
-    this.surface.onchange = () => this.onChange("surface", { surface: this.surface.value, zones: [], mix: {} });
+    this.surface.onchange = () => this.onChange("surface", { surface: this.surface.value, ...PLAIN_LAMPS });
     for (const [input, name] of [
       [this.scale, "scale"],
       [this.length, "length"],

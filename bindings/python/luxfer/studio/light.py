@@ -82,7 +82,7 @@ class Light:
         self.step("emission", pattern, lambda: self.make_texture(project, surface))
         self.step("relight", [], lambda: self.relight(project))
         self.step("expose", [], lambda: self.choose_exposure(surface))
-        self.step("mix", project["mix"], lambda: self.mix(project, surface))
+        self.step("mix", [project["mix"], project["added"]], lambda: self.mix(project, surface))
         self.done["mix"] = project
         self.step("lux", project["lux_plane"], lambda: self.measure(project, surface))
         self.step("first", shot, lambda: self.first_picture(project, size))
@@ -227,12 +227,10 @@ class Light:
     def mix(self, project: Project, surface: str) -> None:
         """Gives each kind of lamp its share of the light, and sends the lamps and how their texture lies."""
         placed = self.room.find_surface(surface)
-        self.lit = mix.apply(self.transfer, placed, project["mix"])
-        lamps = []
-        for lamp in self.transfer.fixtures:
-            by = mix.factor(project["mix"], lamp.kind)
-            lamps.append({k: getattr(lamp, k) for k in ("kind", "position", "axis", "normal", "size", "cct", "duv")})
-            lamps[-1] |= {"flux": by * lamp.flux, "radiance": [by * x for x in lamp.radiance]}
+        self.lit = mix.apply(self.transfer, placed, project["mix"], project["added"])
+        names = ("kind", "position", "axis", "normal", "size", "flux", "radiance", "cct", "duv")
+        shown = mix.lamps(self.transfer.fixtures, placed, project["mix"], project["added"])
+        lamps = [{k: getattr(lamp, k) for k in names} | {"added": number} for lamp, number in shown]
         self.send(
             "lamps",
             error=self.transfer.solution.error,
@@ -268,7 +266,7 @@ class Light:
         scene = self.room
         if compare == "white":
             placed = self.room.find_surface(project["surface"] or self.surface)
-            scene = mix.apply(self.transfer, placed, project["mix"], "white")
+            scene = mix.apply(self.transfer, placed, project["mix"], project["added"], "white")
         self.quick(scene, project, size, "before")
 
     def quick(self, scene: luxfer.Scene, project: Project, size: tuple[int, int], which: str) -> luxfer.Render:
@@ -295,7 +293,7 @@ class Light:
         return measure.numbers(self.thread.finish(job))
 
     def choose_exposure(self, surface: str) -> None:
-        """Chooses the exposure of the pictures by the work plane, before lamps are dimmed: dimmed light looks darker."""
+        """Chooses the exposure of the pictures by the work plane before lamps are dimmed, so dimmed light is darker."""
         self.desks = self.lux_on(work_plane(self.room, surface)[0], self.transfer.scene("lit"))
         self.exposure = exposure_for(self.desks["mean"])
 
@@ -305,7 +303,7 @@ class Light:
         if plane is None:
             self.send("lux", problem=problem)
             return
-        is_known = measure.is_default(project) and all(value == 1 for value in project["mix"].values())
+        is_known = measure.is_default(project) and mix.is_plain(project["mix"], project["added"])
         found = self.desks if is_known else self.lux_on(plane, self.lit)
         self.send("lux", **found, **measure.place(self.room, surface, plane, project))
 

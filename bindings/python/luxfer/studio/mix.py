@@ -1,12 +1,15 @@
-"""The mix of the lamps: a factor for each kind, such as 0.5 for lamps that are dimmed to half.
+"""The lamps as the user wants them: a factor for each kind, such as 0.5 for half of the light, and added lamps.
 
-The factors multiply the emission of the lit room, its luminaires, and thereby everything that is computed from them.
+An added lamp is [kind, u, v]: a copy of the largest lamp of its kind, at a place in metres on the surface. Both change
+the texture of the lit room and the schedule of its lamps, and thereby everything that is computed from them.
 """
 
 from __future__ import annotations
 
 import csv
 import json
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -26,12 +29,60 @@ def factor(mix: dict[str, float], kind: int) -> float:
     return mix.get(str(kind), 1.0)
 
 
+def is_plain(mix: dict[str, float], added: list[list[float]]) -> bool:
+    """Whether nothing is to be changed."""
+    return not added and all(value == 1 for value in mix.values())
+
+
+def models(fixtures: list[luxfer.types.Fixture]) -> dict[int, int]:
+    """Returns for each kind the index of its largest lamp."""
+    out: dict[int, int] = {}
+    for i, lamp in enumerate(fixtures):
+        if lamp.kind not in out or lamp.area > fixtures[out[lamp.kind]].area:
+            out[lamp.kind] = i
+    return out
+
+
+def lamps(
+    fixtures: list[luxfer.types.Fixture],
+    surface: luxfer.types.Surface,
+    mix: dict[str, float],
+    added: list[list[float]],
+) -> list[tuple[luxfer.types.Fixture, int | None]]:
+    """Returns the lamps of the room, each with the number of its addition or None. Additions of a kind that the room no
+    longer has are left out."""
+    known = models(fixtures)
+    out: list[tuple[luxfer.types.Fixture, int | None]] = [(lamp, None) for lamp in fixtures]
+    for i, (kind, u, v) in enumerate(added):
+        if int(kind) in known:
+            model = fixtures[known[int(kind)]]
+            position = np.array(model.position) + step_to(model, surface, u, v)
+            out.append((replace(model, position=tuple(float(x) for x in position)), i))
+    for at, (lamp, number) in enumerate(out):
+        by = factor(mix, lamp.kind)
+        radiance = tuple(by * x for x in lamp.radiance)
+        out[at] = replace(lamp, flux=by * lamp.flux, radiance=radiance), number
+    return out
+
+
+def step_to(
+    lamp: luxfer.types.Fixture, surface: luxfer.types.Surface, u: float, v: float
+) -> np.ndarray[Any, Any]:
+    """Returns the vector from a lamp to a place on the surface."""
+    du, dv = np.array((u, v)) - on_surface(np.array(lamp.position), surface)
+    return np.asarray(du * np.array(surface.u_axis) + dv * np.array(surface.v_axis))
+
+
 def apply(
-    transfer: luxfer.Transfer, surface: luxfer.types.Surface, mix: dict[str, float], which: str = "lit"
+    transfer: luxfer.Transfer,
+    surface: luxfer.types.Surface,
+    mix: dict[str, float],
+    added: list[list[float]],
+    which: str = "lit",
 ) -> luxfer.Scene:
-    """Returns the lit room of a transfer with its lamps mixed; "white" is the room in white light."""
+    """Returns the lit room of a transfer with its lamps as the user wants them; "white" is the room in white light."""
     lit = transfer.scene(which)
-    if all(value == 1 for value in mix.values()):
+    if is_plain(mix, added):
         return lit
     mesh = newest(lit)
     used = lit.material_texture(lit.mesh(mesh).material, "emission")
@@ -43,9 +94,31 @@ def apply(
         for label in labels_of(lamp, surface, to_texture, labels):
             factors[label] = factor(mix, lamp.kind)
     values *= factors[labels][..., None]
+    known = models(transfer.fixtures)
+    for kind, u, v in added:
+        if int(kind) in known:
+            copy_lamp(values, labels, transfer.fixtures[known[int(kind)]], surface, to_texture, (u, v))
     index = lit.add_texture(luxfer.Image(lit.context, values), used.wrap_u, used.wrap_v)
     lit.set_material_texture(lit.mesh(mesh).material, "emission", index, used.uv_set, used.transform)
     return lit
+
+
+def copy_lamp(
+    values: np.ndarray[Any, Any],
+    labels: np.ndarray[Any, Any],
+    lamp: luxfer.types.Fixture,
+    surface: luxfer.types.Surface,
+    to_texture: np.ndarray[Any, Any],
+    place: tuple[float, float],
+) -> None:
+    """Copies the texels of a lamp to another place; what lies beyond the texture is cut."""
+    height, width = labels.shape
+    step = to_texture[:, :2] @ (np.array(place) - on_surface(np.array(lamp.position), surface))
+    dx, dy = round(step[0] * width), round(step[1] * height)
+    ys, xs = np.nonzero(np.isin(labels, labels_of(lamp, surface, to_texture, labels)))
+    inside = (ys + dy >= 0) & (ys + dy < height) & (xs + dx >= 0) & (xs + dx < width)
+    ys, xs = ys[inside], xs[inside]
+    values[ys + dy, xs + dx] = values[ys, xs]
 
 
 def newest(lit: luxfer.Scene) -> int:
@@ -88,30 +161,65 @@ def labels_of(
     return [int(label) for label in np.unique(found) if label]
 
 
-def mix_schedule(path: Path, mix: dict[str, float]) -> None:
-    """Multiplies the light of the lamps in a schedule, .csv or .json, that the library has written."""
-    if all(value == 1 for value in mix.values()):
+def write_schedule(
+    path: Path,
+    transfer: luxfer.Transfer,
+    surface: luxfer.types.Surface,
+    mix: dict[str, float],
+    added: list[list[float]],
+) -> None:
+    """Writes the schedule of the lamps, .csv or .json, as the library does, with the lamps as the user wants them."""
+    transfer.save_fixtures(path)
+    if is_plain(mix, added):
         return
+    fixtures = transfer.fixtures
+    known = models(fixtures)
+    rows, save = read_rows(path)
+    for kind, u, v in added:
+        if int(kind) in known:
+            index = known[int(kind)]
+            rows.append(moved(rows[index], step_to(fixtures[index], surface, u, v)))
+    for row in rows:
+        by = factor(mix, int(row["kind"]))
+        for name in LIGHT:
+            put(row, name, float(row[name]) * by)
+    save(rows)
+
+
+def read_rows(path: Path) -> tuple[list[dict[str, Any]], Callable[[list[dict[str, Any]]], None]]:
+    """Returns the lamps of a schedule, and what writes them again."""
     if path.suffix == ".json":
         whole = json.loads(path.read_text(encoding="utf-8"))
-        for lamp in whole["fixtures"]:
-            scale(lamp, factor(mix, int(lamp["kind"])))
-        path.write_text(json.dumps(whole, indent=1) + "\n", encoding="utf-8")
-        return
+
+        def save_json(rows: list[dict[str, Any]]) -> None:
+            lines = ",\n  ".join(json.dumps(row) for row in rows)
+            path.write_text(f'{{"fixtures": [\n  {lines}\n]}}\n', encoding="utf-8")
+
+        return whole["fixtures"], save_json
     with path.open(newline="", encoding="utf-8") as file:
         reader = csv.DictReader(file)
         names, rows = list(reader.fieldnames or ()), list(reader)
-    for row in rows:
-        scale(row, factor(mix, int(row["kind"])))
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, names, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+
+    def save_csv(rows: list[dict[str, Any]]) -> None:
+        with path.open("w", newline="", encoding="utf-8") as out:
+            writer = csv.DictWriter(out, names, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+
+    return rows, save_csv
 
 
-def scale(lamp: dict[str, Any], by: float) -> None:
-    """Multiplies the light of one lamp; numbers keep seven digits, as the library writes them."""
-    for name in LIGHT:
-        if name in lamp:
-            value = float(f"{float(lamp[name]) * by:.7g}")
-            lamp[name] = f"{value:.7g}" if isinstance(lamp[name], str) else value
+def moved(row: dict[str, Any], step: np.ndarray[Any, Any]) -> dict[str, Any]:
+    """Returns a copy of a lamp at another place."""
+    out = dict(row)
+    for name, by in zip(("x_m", "y_m", "z_m"), step):
+        put(out, name, float(row[name]) + float(by))
+    if "outline_m" in row:
+        out["outline_m"] = [[round(x + float(by), 6) for x, by in zip(corner, step)] for corner in row["outline_m"]]
+    return out
+
+
+def put(row: dict[str, Any], name: str, value: float) -> None:
+    """Sets a number of a lamp, with seven digits as the library writes them."""
+    text = f"{value:.7g}"
+    row[name] = text if isinstance(row[name], str) else float(text)

@@ -28,6 +28,7 @@ DEFAULTS: Project = {
     "surface": None,  # name of the surface that receives the lights; None: the likeliest ceiling
     "pattern": {"scale": "distance", "length": 1.2, "rotation": 0.0, "offset": [0.0, 0.0], "keep_whole": False},
     "mix": {},  # for each kind of lamp, the factor of its light; 1 for kinds that are not named
+    "added": [],  # [kind, u, v] in metres on the surface: a copy of a lamp of this kind
     "lux_plane": {"surface": None, "height": 0.75},  # where the page shows lux: a surface, or a height above the floor
     "white": 100.0,  # luminance of the photo's white, cd/m²
     "camera": None,  # {"position", "target", "fov_y"}; None: the first camera of the room
@@ -154,6 +155,7 @@ FIELDS = {
         keep_whole=truth,
     ),
     "mix": factors(0, 4),
+    "added": many(many(METRE, 3), max_count=1000),
     "lux_plane": record(surface=optional(text), height=number(0, 100)),
     "white": number(1e-3, 1e6),
     "camera": optional(record(position=many(METRE, 3), target=many(METRE, 3), fov_y=number(0.01, 3))),

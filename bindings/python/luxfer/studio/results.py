@@ -82,7 +82,8 @@ def _usd(path: Path, wanted: Wanted, light: Light) -> None:
     try:
         import pxr  # noqa: F401
     except ImportError:
-        raise LookupError("USD needs one more package: pip install 'luxfer[usd]', then start the studio again") from None
+        what = "USD needs one more package: pip install 'luxfer[usd]', then start the studio again"
+        raise LookupError(what) from None
     from .. import usd
 
     usd.save(light.lit, path)
@@ -99,8 +100,9 @@ def _png(path: Path, wanted: Wanted, light: Light) -> None:
 
 
 def _schedule(path: Path, wanted: Wanted, light: Light) -> None:
-    light.transfer.save_fixtures(path)
-    mix.mix_schedule(path, wanted.project["mix"])
+    project = wanted.project
+    surface = light.room.find_surface(project["surface"] or light.surface)
+    mix.write_schedule(path, light.transfer, surface, project["mix"], project["added"])
 
 
 def _photometry(path: Path, wanted: Wanted, light: Light) -> None:
@@ -114,11 +116,8 @@ def _photometry(path: Path, wanted: Wanted, light: Light) -> None:
         raise LookupError("there is no whole lamp: move the pattern until a lamp is not cut by the edge of the ceiling")
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as out:
         for kind, lamps in sorted(kinds.items()):
-            length, width, flux = (
-                math.fsum(values) / len(lamps)
-                for values in ([lamp.size[0] for lamp in lamps], [lamp.size[1] for lamp in lamps],
-                               [lamp.flux for lamp in lamps])
-            )
+            numbers = [(*lamp.size, lamp.flux) for lamp in lamps]
+            length, width, flux = (math.fsum(values) / len(lamps) for values in zip(*numbers))
             flux *= mix.factor(wanted.project["mix"], kind)
             name = f"kind {letter(kind)}"
             product = Product.panel(light.context, length, width, flux, name)
