@@ -274,11 +274,11 @@ export class LampList {
     canvas.onpointerup = (event) => {
       if (!down) return;
       const far = Math.hypot(event.clientX - down[0], event.clientY - down[1]);
-      const moved = shift(event);
+      const [moved, at] = [shift(event), metres(event.offsetX, event.offsetY)];
       down = null;
-      this.release();
+      this.release(); // draws the plan anew, which ends this canvas
       if (far >= CLICK) this.onShift(...moved);
-      else this.toggle(metres(event.offsetX, event.offsetY));
+      else this.toggle(at);
     };
   }
 

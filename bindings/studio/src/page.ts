@@ -326,8 +326,12 @@ export class Page {
       lamps: () => {
         this.lamps.setLamps(message);
         this.roomTools.setLamps(message.list);
+        document.body.dataset.lampsOf = document.body.dataset.texture;
       },
-      lux: () => this.lux.show(message),
+      lux: () => {
+        this.lux.show(message);
+        document.body.dataset.luxOf = document.body.dataset.texture;
+      },
       picture: () => this.takePicture(message, payload),
       progress: () => this.roomStatus(`rendering, ${percent(message.share)}`),
       plan: () => {
