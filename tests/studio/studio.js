@@ -95,15 +95,19 @@ export async function closeBrowser() {
   await (await chromiumOfAll)?.close();
 }
 
+const isLit = () => document.body.dataset.texture && document.body.dataset.noise;
+/** The page has its first results; those of the light need not be waited for. */
+export const isThere = () => document.body.dataset.last;
+
 /** A page of the studio, whose errors fail the test. */
-export async function open(test, browser, address) {
+export async function open(test, browser, address, isReady = isLit) {
   const page = await browser.newPage();
   const errors = [];
   page.on("pageerror", (error) => errors.push(String(error)));
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
   page.problems = errors;
   await page.goto(address);
-  await page.waitForFunction(() => document.body.dataset.texture && document.body.dataset.noise);
+  await page.waitForFunction(isReady);
   return page;
 }
 

@@ -10,6 +10,7 @@ import {
   changed,
   closeBrowser,
   folder,
+  isThere,
   missing,
   open,
   paint,
@@ -69,11 +70,15 @@ const OF_PROGRAMS = new Set(
     "IMPLAUSIBLE_SIZE FAR_FROM_ORIGIN").split(" "),
 );
 
-/** Paints the three strokes, each of which changes the masks. */
-async function paintAll(page) {
+/** Paints the three strokes; each of them changes the masks, for which is waited if `isPatient`. */
+async function paintAll(page, isPatient = true) {
+  const before = await state(page, "rounds");
   for (const [tool, ...places] of STROKES) {
-    await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));
+    const last = await state(page, "rounds");
+    await paint(page, tool, ...places);
+    if (isPatient) await changed(page, "rounds", last);
   }
+  await changed(page, "rounds", before);
   await page.waitForFunction(() => document.body.dataset.strokes === "3" && document.body.dataset.proposed === "");
 }
 
@@ -146,7 +151,7 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
   await other.waitForFunction((masks) => document.body.dataset.masks === masks, made.masks);
   await other.waitForFunction((texture) => document.body.dataset.texture === texture, made.texture);
   await other.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps);
-  await settled(other);
+  await other.waitForFunction((texture) => document.body.dataset.luxOf === texture, made.texture);
   assert.equal(await download(other, "csv", "utf8"), csv);
   assert.deepEqual([...page.problems, ...other.problems], []);
 });
@@ -276,7 +281,7 @@ test("the lamps by hand: shift, turn, size, mix, mean, and another ceiling", { s
 test("stylise: what is painted on the ball is painted on the picture", { skip }, async (t) => {
   const { address } = await server();
   const browser = await browse(t);
-  const page = await open(t, browser, address);
+  const page = await open(t, browser, address, isThere);
   await page.locator("#tab-light").focus();
   await page.keyboard.press("ArrowRight");
   await page.waitForFunction(() => document.body.dataset.painting);
@@ -347,10 +352,15 @@ test("every warning of the library is shown, with what to do here", { skip }, as
   }
 });
 
-test("windows of any size, light and dark", { skip }, async (t) => {
+test("by touch, in windows of any size, light and dark", { skip }, async (t) => {
   const { address } = await server();
-  const browser = await browse(t, { colorScheme: "dark" });
+  const browser = await browse(t, { colorScheme: "dark", hasTouch: true, viewport: { width: 800, height: 900 } });
   const page = await open(t, browser, address);
+  const before = await state(page, "rounds");
+  await page.locator("label:has(#tool-not-plane)").tap();
+  const [x, y] = await place(page, 0.5, 0.95);
+  await changed(page, "rounds", before, () => page.touchscreen.tap(x, y));
+  assert.equal(await state(page, "strokes"), "1");
   const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   assert.equal(await background(), "rgb(23, 25, 28)");
   for (const [width, height] of [
@@ -378,17 +388,6 @@ test("windows of any size, light and dark", { skip }, async (t) => {
   assert.equal(await background(), "rgb(244, 244, 242)");
 });
 
-test("by touch", { skip }, async (t) => {
-  const { address } = await server();
-  const browser = await browse(t, { hasTouch: true, viewport: { width: 800, height: 900 } });
-  const page = await open(t, browser, address);
-  const before = await state(page, "rounds");
-  await page.locator("label:has(#tool-not-plane)").tap();
-  const [x, y] = await place(page, 0.5, 0.95);
-  await changed(page, "rounds", before, () => page.touchscreen.tap(x, y));
-  assert.equal(await state(page, "strokes"), "1");
-});
-
 test("two users at once", { skip }, async (t) => {
   const { address } = await server();
   const [one, two] = await Promise.all([
@@ -399,9 +398,9 @@ test("two users at once", { skip }, async (t) => {
     [one, STROKES.slice(0, 2)],
     [two, STROKES.slice(2)],
   ]) {
-    for (const [tool, ...places] of strokes) {
-      await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));
-    }
+    const before = await state(page, "rounds");
+    for (const [tool, ...places] of strokes) await paint(page, tool, ...places);
+    await changed(page, "rounds", before);
   }
   assert.notEqual(await state(one, "masks"), await state(two, "masks"));
   assert.equal(await state(one, "strokes"), "2");
@@ -413,7 +412,7 @@ test("a killed server loses no stroke", { skip }, async (t) => {
   const first = await serve(t, place);
   const browser = await browse(t);
   const page = await open(t, browser, first.address);
-  await paintAll(page);
+  await paintAll(page, false);
   const made = await state(page, "masks");
   await first.kill();
   await page.locator("#notice").waitFor();
@@ -430,13 +429,13 @@ test("a killed server loses no stroke", { skip }, async (t) => {
   assert.match(await again.locator("#notice-text").innerText(), /is back/);
   // The masks follow the stroke that the first server has not seen.
   assert.notEqual(made, "");
-  assert.notEqual((await settled(again)).masks, made);
+  assert.notEqual(await state(again, "masks"), made);
 });
 
 test("who is not let in, and files that are none", { skip }, async (t) => {
   const { address } = await server();
   const browser = await browse(t);
-  const page = await open(t, browser, address);
+  const page = await open(t, browser, address, isThere);
   const wrong = await browser.newPage();
   const answer = await wrong.goto(address.replace(/\/[^/]+\/$/, "/wrong-token/"));
   assert.equal(answer.status(), 403);

@@ -238,6 +238,10 @@ export class LampList {
     context.font = "bold 20px system-ui, sans-serif";
     for (const lamp of this.lamps) {
       const [u0, v0, u1, v1] = this.zoneOf(lamp).map((x) => x * scale);
+      if (lamp.added !== null) {
+        context.fillStyle = "#fff1dc"; // the texture of the pattern does not have it
+        context.fillRect(u0, v0, u1 - u0, v1 - v0);
+      }
       context.strokeStyle = "#56b4e9";
       context.lineWidth = 2;
       context.strokeRect(u0, v0, u1 - u0, v1 - v0);
