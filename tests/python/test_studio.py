@@ -225,7 +225,8 @@ class Work(Case):
             {"kind": kind, "radius": 2.5, "points": [c for x, y in places for c in (x * width, y * height)]}
             for kind, places in STROKES
         ]
-        return {**server.json("start")["project"], "strokes": strokes, "noise": 1.0, "mix": {"1": 0.5}, "added": [[1, 3, 2]]}
+        lamps = {"mix": {"1": 0.5}, "added": [[1, 3, 2]]}
+        return {**server.json("start")["project"], "strokes": strokes, "noise": 1.0, **lamps}
 
     def test_a_project_gives_the_same_again(self):
         server = self.serve(self.photo)

@@ -109,7 +109,8 @@ class Results(Case):
                     self.assertLess(abs(other[name] - value / 4), 1e-5 * value, name)
         files = zipfile.ZipFile(io.BytesIO(self.out("photometry")))
         whole = sorted({int(kind) for kind in kinds} - {0})
-        self.assertEqual(sorted(files.namelist()), sorted(f"kind {chr(64 + k)}.{e}" for k in whole for e in ("ies", "ldt")))
+        names = [f"kind {chr(64 + k)}.{ending}" for k in whole for ending in ("ies", "ldt")]
+        self.assertEqual(sorted(files.namelist()), sorted(names))
         lamps = [row for row in csv.DictReader(io.StringIO(self.out("csv").decode())) if row["kind"] == "1"]
         mean = sum(float(row["flux_lm"]) for row in lamps) / len(lamps)
         for ending in ("ies", "ldt"):

@@ -38,7 +38,14 @@ const DESK_HEIGHT = 0.75;
 export class LuxPanel {
   private readonly plane = make("select", { id: "lux-plane" });
   private readonly height = make("input", { type: "number", id: "lux-height", min: 0, max: 100, step: 0.05 });
-  private readonly wish = make("input", { type: "number", id: "lux-wish", min: 1, max: 100000, step: "any", value: 500 });
+  private readonly wish = make("input", {
+    type: "number",
+    id: "lux-wish",
+    min: 1,
+    max: 100000,
+    step: "any",
+    value: 500, // [convention: EN 12464-1, offices]
+  });
   private readonly bring = make("button", { type: "button", id: "lux-bring", disabled: true }, "Set the mean");
   private readonly result = make("div", { class: "lux-result" });
   private readonly where = make("p", { class: "quiet" });

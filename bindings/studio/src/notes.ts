@@ -71,7 +71,8 @@ export class Notes {
 
   private draw(): void {
     const proposed = this.proposed;
-    const rest = [...this.room, ...this.warnings].filter((w) => w.code !== "PROPOSED" && !(w.code === "UNSEEN" && this.doubt));
+    const isSaid = (code: string) => code === "PROPOSED" || (code === "UNSEEN" && this.doubt !== null);
+    const rest = [...this.room, ...this.warnings].filter((w) => !isSaid(w.code));
     const marks: Mark[] = [];
     const items: HTMLElement[] = [];
     if (this.failure) items.push(item("error", "!", make("b", {}, "Failed: "), this.failure));

@@ -224,7 +224,8 @@ export class RoomView {
   /** u and v where a pointer meets the plane of a surface; null if it does not. */
   onPlane(surface: Rectangle, event: { clientX: number; clientY: number }): [number, number] | null {
     const box = this.frame.getBoundingClientRect();
-    const [x, y] = [(2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height];
+    const x = (2 * (event.clientX - box.left)) / box.width - 1;
+    const y = 1 - (2 * (event.clientY - box.top)) / box.height;
     const eye = this.camera.position;
     const ahead = new Vector3(x, y, 0.5).unproject(this.camera).sub(eye).normalize();
     const towards = dot(ahead.toArray(), surface.normal);

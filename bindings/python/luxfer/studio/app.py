@@ -40,12 +40,18 @@ MAX_PROJECT = 16 << 20
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
 ROOMS = {".glb", ".gltf"}
 #: What to do about a file of another kind, by the ending of its name.
-EXPORT = ": export it as .glb from the program that made it"
 CONVERSIONS = {
-    **dict.fromkeys((".heic", ".heif", ".avif"), ": save it as JPEG (on an iPhone: Camera > Formats > Most Compatible)"),
-    **dict.fromkeys((".dng", ".cr2", ".cr3", ".nef", ".arw", ".raf"), ": develop it to JPEG or TIFF in a photo program"),
-    **dict.fromkeys((".blend", ".fbx", ".obj", ".skp", ".3ds", ".max", ".dae", ".stl", ".ifc", ".rvt"), EXPORT),
-    **dict.fromkeys((".usd", ".usda", ".usdc", ".usdz"), ": import it into Blender and export it as .glb"),
+    ending: what
+    for endings, what in (
+        (".heic .heif .avif", ": save it as JPEG (on an iPhone: Camera > Formats > Most Compatible)"),
+        (".dng .cr2 .cr3 .nef .arw .raf", ": develop it to JPEG or TIFF in a photo program"),
+        (
+            ".blend .fbx .obj .skp .3ds .max .dae .stl .ifc .rvt",
+            ": export it as .glb from the program that made it",
+        ),
+        (".usd .usda .usdc .usdz", ": import it into Blender and export it as .glb"),
+    )
+    for ending in endings.split()
 }
 
 
@@ -129,9 +135,8 @@ class Studio:
         if suffix in ROOMS:
             scene = luxfer.Scene.from_bytes(self.context, data, folder)
             if not scene.candidates:
-                raise luxfer.errors.Degenerate(
-                    "it has no surface that could receive lights: model its ceiling as a flat object, and export it again"
-                )
+                what = "it has no surface that could receive lights: model its ceiling as a flat object"
+                raise luxfer.errors.Degenerate(what)
         else:
             luxfer.Image.from_bytes(self.context, data)
 
@@ -216,8 +221,8 @@ class Studio:
         if not (8 <= len(name) <= 64 and name.isascii() and name.isalnum()):
             await socket.close(1008)
             return
+        session = await run_in_threadpool(self.session, name)  # before the page can ask for anything of it
         await socket.accept()
-        session = await run_in_threadpool(self.session, name)
         loop, outbox = asyncio.get_running_loop(), Outbox()
 
         def listen(header: dict[str, Any], payload: bytes) -> None:
