@@ -34,7 +34,7 @@ try {
   await page.waitForFunction(
     () =>
       !document.getElementById("label-before").hidden &&
-      /\d+ s|ms/.test(document.getElementById("planned").textContent),
+      /Planned: \d/.test(document.getElementById("planned").textContent),
   );
   mkdirSync(out, { recursive: true });
   await page.screenshot({ path: join(out, "studio.png") });

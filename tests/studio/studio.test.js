@@ -255,6 +255,8 @@ test("the lamps by hand: shift, turn, size, mix, mean, and another ceiling", { s
   await page.locator("#lamp-plan").click({ position: free });
   await page.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps);
 
+  await page.waitForFunction((full) => document.getElementById("lux").dataset.mean === full, full);
+
   // Light: a kind at half, then the wanted mean.
   await page.locator(".dimmer input").first().fill("50");
   const dimmed = await otherLux(page, full);

@@ -167,7 +167,7 @@ export class RoomTools {
     );
     const area = (c: Candidate) => c.place!.size[0] * c.place!.size[1];
     below.sort((a, b) => area(a) - area(b) || b.score - a.score);
-    if (below.length && below[0].name !== this.chosen) this.onSurface(below[0].name);
+    if (below.length && below[0].name !== this.chosen) this.take(below[0].name);
   }
 
   // -- keys
@@ -200,7 +200,14 @@ export class RoomTools {
   private next(by: number): void {
     const at = this.candidates.findIndex((c) => c.name === this.chosen);
     const count = this.candidates.length;
-    if (count > 1) this.onSurface(this.candidates[(at + by + count) % count].name);
+    if (count > 1) this.take(this.candidates[(at + by + count) % count].name);
+  }
+
+  /** Chooses a surface, at once for the next click or key. */
+  private take(name: string): void {
+    this.chosen = name;
+    this.onSurface(name);
+    this.room.drawMarks();
   }
 
   // -- drawing
