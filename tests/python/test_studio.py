@@ -66,11 +66,12 @@ class Server:
         assert status == 200, (status, content)
         return json.loads(content)
 
-    def talk(self, session, edits, origin=None):
-        """Sends one edit after the other; returns what came in by the last message of each type, for each edit."""
-        return asyncio.run(self._talk(session, edits, self.origin if origin is None else origin))
+    def talk(self, session, edits, origin=None, until="idle"):
+        """Sends one edit after the other, each when a message of type `until` has come; returns what came in by the
+        last message of each type, for each edit."""
+        return asyncio.run(self._talk(session, edits, self.origin if origin is None else origin, until))
 
-    async def _talk(self, session, edits, origin):
+    async def _talk(self, session, edits, origin, until):
         address = f"{self.address.replace('http', 'ws', 1)}ws?session={session}"
         out = []
         async with websockets.connect(address, origin=origin, max_size=None) as socket:
@@ -79,7 +80,7 @@ class Server:
                     json.dumps({"type": "edit", "version": version, "size": SIZE, "compare": "off", **edit})
                 )
                 seen = {}
-                while not {"idle", "failed"} & seen.keys():
+                while not {until, "failed"} & seen.keys():
                     message = await asyncio.wait_for(socket.recv(), 120)
                     length = struct.unpack_from("<I", message)[0]
                     header = json.loads(message[4 : 4 + length])
@@ -181,6 +182,9 @@ class Door(Case):
             ("photo.png", (self.root / "open" / "photo.png").read_bytes()[:200], "photo.png cannot be read"),
             ("room.glb", b"glTF nothing", "room.glb cannot be read"),
             ("notes.txt", b"hello", "is no photo"),
+            ("IMG_1.HEIC", b"x", "save it as JPEG"),
+            ("room.fbx", b"x", "export it as .glb"),
+            ("room.usdz", b"x", "import it into Blender"),
             ("photo.jpg", b"", "is empty"),
         ):
             status, _, answer = self.server.get(f"{self.server.token}/files?name={name}", content)
@@ -221,7 +225,8 @@ class Work(Case):
             {"kind": kind, "radius": 2.5, "points": [c for x, y in places for c in (x * width, y * height)]}
             for kind, places in STROKES
         ]
-        return {**server.json("start")["project"], "strokes": strokes, "noise": 1.0}
+        lamps = {"mix": {"1": 0.5}, "added": [[1, 3, 2]]}
+        return {**server.json("start")["project"], "strokes": strokes, "noise": 1.0, **lamps}
 
     def test_a_project_gives_the_same_again(self):
         server = self.serve(self.photo)
@@ -265,7 +270,7 @@ class Work(Case):
     def test_lamps_are_taken_out_of_photo_and_room(self):
         server = self.serve(self.photo)
         painted = self.painted(server)
-        first = server.talk("session01", [{"project": painted}])[0]
+        first = server.talk("session01", [{"project": painted}], until="lamps")[0]
         box = first["masks"]["lamps"][0]["box"]
         removed = {**painted, "removed": [[(box[0] + box[2]) / 2, (box[1] + box[3]) / 2]]}
         surface, lamp = first["texture"]["surface"], first["lamps"]["list"][0]
@@ -273,7 +278,7 @@ class Work(Case):
         u, v = float(at @ np.array(surface["u_axis"])), float(at @ np.array(surface["v_axis"]))
         zone = {**painted, "zones": [[u - 0.35, v - 0.35, u + 0.35, v + 0.35]]}
         without, free, back = server.talk(
-            "session01", [{"project": removed}, {"project": zone}, {"project": painted}]
+            "session01", [{"project": removed}, {"project": zone}, {"project": painted}], until="lamps"
         )
         self.assertEqual(len(without["masks"]["lamps"]), len(first["masks"]["lamps"]) - 1)
         self.assertLess(len(free["lamps"]["list"]), len(first["lamps"]["list"]))
@@ -283,8 +288,9 @@ class Work(Case):
         kept = self.folder / "kept.json"
         server = self.serve(self.photo, "--project", kept)
         painted = self.painted(server)
-        one = server.talk("userone00", [{"project": painted}])[0]
-        two = server.talk("usertwo00", [{"project": {**painted, "strokes": painted["strokes"][:1]}}])[0]
+        # The view follows the masks of the photo's own size.
+        one = server.talk("userone00", [{"project": painted}], until="view")[0]
+        two = server.talk("usertwo00", [{"project": {**painted, "strokes": painted["strokes"][:1]}}], until="view")[0]
         self.assertNotEqual(one["masks"]["digest"], two["masks"]["digest"])
         self.assertEqual(len(project.load(kept)["strokes"]), 3)
         self.assertEqual(one["saved"]["file"], "kept.json")
@@ -330,6 +336,10 @@ class Parts(Case):
             {"strokes": [{"kind": "wall", "radius": 1, "points": [1, 2]}]},
             {"removed": [[1, float("nan")]]},
             {"pattern": {"scale": "distance"}},
+            {"mix": {"A": 1}},
+            {"mix": {"1": -0.1}},
+            {"added": [[1, 2]]},
+            {"lux_plane": {"surface": None, "height": -1}},
         ):
             with self.assertRaises(project.Invalid, msg=str(wrong)):
                 project.checked({**good, **wrong})

@@ -2,6 +2,8 @@
 `studio`."""
 
 import asyncio
+import contextlib
+import io
 import json
 import os
 import re
@@ -13,10 +15,41 @@ from unittest import mock
 
 from support import PACKAGE, Case, context, luxfer
 
-from luxfer.studio import app, command, files, opening, outbox, project, security
+from luxfer.studio import app, command, files, main, opening, outbox, project, security
 from luxfer.studio.session import Wanted
 
 MONTH = files.KEEP_SECONDS
+
+
+class Start(Case):
+    """Command lines that start nothing: the exit code, and one line that names the option."""
+
+    def start(self, *words):
+        err = io.StringIO()
+        with mock.patch.object(app, "STATIC", self.folder), contextlib.redirect_stderr(err):
+            (self.folder / "index.html").write_text("page")
+            try:
+                code = main(["--no-browser", *map(str, words)])
+            except SystemExit as end:
+                code = end.code
+        return code, err.getvalue()
+
+    def test_what_is_wrong_is_said_in_one_line(self):
+        file = self.folder / "index.html"
+        good = ("--state", self.folder / "state")
+        for code, said, *words in (
+            (2, "--port: 'many' is not a port", "--port", "many"),
+            (2, "--port: '70000' is not a port in [0, 65535]", "--port", "70000"),
+            (2, "unrecognized arguments: --fold", "--fold", self.folder),
+            (3, "there is no file", *good, self.folder / "none.jpg"),
+            (3, "--folder: there is no folder", *good, "--folder", self.folder / "none"),
+            (3, "is not a project of luxfer studio", *good, "--project", file),
+            (5, "cannot keep files", "--state", file / "below"),
+        ):
+            found, text = self.start(*words)
+            self.assertEqual(found, code, text)
+            self.assertIn(said, text)
+            self.assertTrue(text.startswith("luxfer studio: ") and text.count("\n") == 1, text)
 
 
 class State(Case):

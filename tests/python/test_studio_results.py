@@ -2,18 +2,28 @@
 benches/peers/install.sh has installed `studio`."""
 
 import ast
+import csv
+import importlib.util
+import io
 import json
 import threading
 import unittest
+import zipfile
 from types import SimpleNamespace
+from unittest import mock
 
 from support import Case, context, demo, luxfer, np
 
 from luxfer.cli.plane import above_floor
-from luxfer.studio import files, program, project, security
+from luxfer.studio import files, light, painting, pictures, program, project, results, security
 from luxfer.studio.light import Light
 from luxfer.studio.room import work_plane
-from luxfer.studio.session import ENDINGS, Session
+from luxfer.studio.results import ENDINGS
+from luxfer.studio.session import Session
+
+
+HAS_USD = importlib.util.find_spec("pxr") is not None
+KINDS = [kind for kind in ENDINGS if kind != "usd" or HAS_USD]
 
 
 class Results(Case):
@@ -28,16 +38,21 @@ class Results(Case):
         self.project = project.checked({"luxfer_studio": 1, "photo": named, "noise": 1.0, "exposure": 1e-3})
         self.session = Session("session01", context(), self.files, self.folder / "kept.json")
         self.addCleanup(self.session.close)
+        # What takes time, and is no matter of these tests: paths of the strength, and the time of the first picture.
+        for name, value in (("RELIGHT", {"target_error": 0.1, "paths": 1 << 13}), ("FIRST_MS", 50)):
+            patch = mock.patch.object(light, name, value)
+            patch.start()
+            self.addCleanup(patch.stop)
 
-    def edit(self, seen=lambda header: None, draft=False, **changes):
-        """Sends a state of the project, and waits until the work is done."""
+    def edit(self, seen=lambda header: None, draft=False, until="idle", **changes):
+        """Sends a state of the project, and waits for a message: the last one comes when the work is done."""
         ended, failures = threading.Event(), []
 
         def listen(header, payload):
             seen(header)
             if header["type"] == "failed":
                 failures.append(header["message"])
-            if header["type"] in ("idle", "failed"):
+            if header["type"] in (until, "failed"):
                 ended.set()
 
         self.session.listeners[:] = [listen]
@@ -59,7 +74,7 @@ class Results(Case):
 
         def seen(header):  # in the thread of the work, before it goes on
             if header["type"] == "picture" and not header["done"]:
-                for kind in ENDINGS:
+                for kind in KINDS:
                     early.setdefault(kind, self.out(kind))
             if header["type"] == "plan":  # the picture has its full size, and becomes better
                 self.session.out("exr", self.folder).rename(self.folder / "early.exr")
@@ -67,18 +82,114 @@ class Results(Case):
         self.edit(seen)
         self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program"])
         self.assertEqual(luxfer.Image.load(context(), self.folder / "early.exr").size[:2], (160, 104))
-        first = {kind: self.out(kind) for kind in ENDINGS}
+        first = {kind: self.out(kind) for kind in KINDS}
         self.assertEqual([kind for kind, content in first.items() if content is None], [])
         self.assertEqual(luxfer.Image.load(context(), self.folder / "office.exr").size[:2], (160, 104))
 
         # A change that nothing has followed yet: no result of the former project is given for it.
         self.edit(draft=True, white=200.0)
-        later = {kind: self.out(kind) for kind in ENDINGS}
+        later = {kind: self.out(kind) for kind in KINDS}
         self.assertEqual([kind for kind, content in later.items() if content is not None], ["project"])
         self.assertEqual(json.loads(later["project"])["white"], 200.0)
         self.edit(white=200.0)
         for kind, content in first.items():
             self.assertTrue(self.out(kind) not in (None, content), kind)
+
+        self.check_mixed(first)
+
+    def check_mixed(self, first):
+        """Dimming every kind to a quarter dims schedule, photometry, room and illuminance, but not the exposure."""
+        kinds = {row["kind"] for row in csv.DictReader(io.StringIO(first["csv"].decode()))}
+        self.edit(mix=dict.fromkeys(kinds, 0.25), until="lux")
+        for kind in ("csv", "json"):
+            before, after = ([self.light_of(kind, data) for data in (first[kind], self.out(kind))])
+            self.assertEqual(len(before), len(after))
+            for one, other in zip(before, after):
+                for name, value in one.items():
+                    self.assertLess(abs(other[name] - value / 4), 1e-5 * value, name)
+        files = zipfile.ZipFile(io.BytesIO(self.out("photometry")))
+        whole = sorted({int(kind) for kind in kinds} - {0})
+        names = [f"kind {chr(64 + k)}.{ending}" for k in whole for ending in ("ies", "ldt")]
+        self.assertEqual(sorted(files.namelist()), sorted(names))
+        lamps = [row for row in csv.DictReader(io.StringIO(self.out("csv").decode())) if row["kind"] == "1"]
+        mean = sum(float(row["flux_lm"]) for row in lamps) / len(lamps)
+        for ending in ("ies", "ldt"):
+            flux = luxfer.Distribution.load_memory(context(), files.read(f"kind A.{ending}"), ending).report.flux
+            self.assertLess(abs(flux / mean - 1), 0.01, ending)
+        full, dimmed = (self.mean_of(kind) for kind in ({}, dict.fromkeys(kinds, 0.25)))
+        self.assertLess(abs(dimmed / full - 0.25), 0.01)
+
+    def light_of(self, kind, data):
+        """The light of each lamp of a schedule."""
+        text = data.decode()
+        lamps = list(csv.DictReader(io.StringIO(text))) if kind == "csv" else json.loads(text)["fixtures"]
+        return [{name: float(lamp[name]) for name in ("flux_lm", "red_cd_m2")} for lamp in lamps]
+
+    def mean_of(self, mix):
+        """The mean illuminance of the work plane with a mix."""
+        seen = []
+        self.edit(lambda header: seen.append(header["mean"]) if header["type"] == "lux" else None, mix=mix, until="lux")
+        return seen[-1]
+
+    @unittest.skipIf(HAS_USD, "with the package, test_usd checks the file")
+    def test_usd_without_its_package_says_what_to_install(self):
+        with self.assertRaisesRegex(LookupError, "pip install 'luxfer\\[usd\\]'"):
+            results.write("usd", self.folder / "room.usdz", None, SimpleNamespace(lit=None))
+
+    def test_lux_goes_with_the_white_and_lies_where_it_is_asked_for(self):
+        seen = {}
+
+        def last(header):
+            seen[header["type"]] = header
+
+        self.edit(last, until="lux")
+        mean = seen["lux"]["mean"]
+        self.edit(last, white=200.0, until="lux")
+        self.assertLess(abs(seen["lux"]["mean"] / mean - 2), 0.02)
+        self.edit(last, white=200.0, lux_plane={"surface": None, "height": 0.0}, until="lux")
+        self.assertEqual(seen["lux"]["height"], 0.0)
+        self.edit(last, white=200.0, lux_plane={"surface": "Left wall", "height": 0.75}, until="lux")
+        self.assertEqual(seen["lux"]["surface"], "Left wall")
+        self.assertNotIn("height", seen["lux"])
+        self.edit(last, white=200.0, lux_plane={"surface": "no such", "height": 0.75}, until="lux")
+        self.assertIn("Choose another plane", seen["lux"]["problem"])
+
+    def test_an_added_lamp_is_in_the_room_and_in_its_schedule(self):
+        seen = {}
+
+        def last(header):
+            seen[header["type"]] = header
+
+        self.edit(last, until="lux")
+        before, mean = seen["lamps"]["list"], seen["lux"]["mean"]
+        plain = self.out("csv")
+        kind = before[0]["kind"]
+        added = [[kind, 3.0, 2.0], [99, 1.0, 1.0]]  # there is no kind 99
+        self.edit(last, added=added, until="lux")
+        after = seen["lamps"]["list"]
+        self.assertEqual(after[: len(before)], before)
+        self.assertEqual([lamp["added"] for lamp in after[len(before) :]], [0])
+        model = max((lamp for lamp in before if lamp["kind"] == kind), key=lambda lamp: lamp["flux"])
+        place = self.session.light.room.find_surface("Ceiling")
+        at = np.subtract(after[-1]["position"], place.origin)
+        self.assertAlmostEqual(float(at @ np.array(place.u_axis)), 3.0, places=4)
+        self.assertAlmostEqual(float(at @ np.array(place.v_axis)), 2.0, places=4)
+        total = sum(lamp["flux"] for lamp in before)
+        self.assertGreater(seen["lux"]["mean"], mean * (1 + 0.5 * model["flux"] / total))
+        rows = self.out("csv").decode().splitlines()
+        self.assertEqual(rows[:-1], plain.decode().splitlines())
+        self.assertAlmostEqual(float(rows[-1].split(",")[0]), after[-1]["position"][0], places=4)
+        outlines = [lamp["outline_m"] for lamp in json.loads(self.out("json"))["fixtures"]]
+        middle = np.mean(outlines[-1], axis=0)
+        self.assertLess(float(np.abs(middle - after[-1]["position"]).max()), 0.1)
+
+    def test_a_turned_texture_is_mapped_to_the_surface(self):
+        seen = {}
+        pattern = {**self.project["pattern"], "rotation": 0.5}
+        self.edit(lambda header: seen.update({header["type"]: header}), pattern=pattern, until="lamps")
+        matrix = np.array(seen["lamps"]["to_texture"])
+        angle = np.arctan2(matrix[0, 1] / np.hypot(*matrix[0, :2]), matrix[0, 0] / np.hypot(*matrix[0, :2]))
+        self.assertAlmostEqual(float(angle), 0.5, places=3)
 
     def test_a_page_that_connects_disturbs_no_work(self):
         seen = []
@@ -88,8 +199,67 @@ class Results(Case):
                 self.session.hello()
             seen.append(header["type"])
 
-        self.edit(greet)
+        self.edit(greet, until="picture")
         self.assertIn("picture", seen)
+
+
+class Stylised(Case):
+    """The stylisation, at a small size."""
+
+    def setUp(self):
+        super().setUp()
+        for name, value in (("SIZE", (80, 60)), ("SHEET_SIZE", (160, 120)), ("SAMPLES", 2), ("SHEET_SAMPLES", 1)):
+            patch = mock.patch.object(painting, name, value)
+            patch.start()
+            self.addCleanup(patch.stop)
+        self.messages, self.failures, self.done = [], [], threading.Event()
+        self.painter = painting.Painter(context(), self.take, self.fail_later)
+        self.addCleanup(self.painter.close)
+
+    def take(self, kind, payload=b"", **header):
+        self.messages.append((kind, header, payload))
+        if kind == "painting" and header["done"]:
+            self.done.set()
+
+    def fail_later(self, failure):
+        self.failures.append(failure)
+        self.done.set()
+
+    def paint(self, artwork):
+        """Waits for the picture and returns its header."""
+        self.done.clear()
+        self.painter.ask({"artwork": artwork})
+        self.assertTrue(self.done.wait(120))
+        self.assertEqual(self.failures, [])
+        return self.messages[-2][1]
+
+    def test_the_picture_follows_the_artwork(self):
+        first = self.paint("pen")
+        self.assertEqual([kind for kind, _, _ in self.messages if kind != "working"], ["artwork", *["painting"] * 2])
+        self.assertNotEqual(first["digest"], self.paint("paint")["digest"])
+        # The printed sheet, photographed, is the ball again: grey and pale, in the shape of the picture.
+        sheet = self.painter.out("sheet", self.folder)
+        self.painter.take_artwork(sheet.read_bytes(), True)
+        self.assertEqual(self.painter.own.size[:2], (80, 60))
+        self.assertGreater(float(self.painter.own.numpy().min()), 0.2)
+        own = self.paint("own")
+        picture = luxfer.Image.load(context(), self.painter.out("painting", self.folder))
+        self.assertEqual(pictures.digest(self.painter.painted), own["digest"])
+        self.assertEqual(picture.size[:2], (80, 60))
+
+    def test_what_is_no_artwork_says_what_to_do(self):
+        for message, text in (({"artwork": "own"}, "open one"), ({"artwork": "oil"}, "'oil'"), ({}, "None")):
+            with self.assertRaisesRegex(project.Invalid, text):
+                self.painter.ask(message)
+        square = self.folder / "square.png"
+        luxfer.Image(context(), np.ones((50, 50, 3), np.float32)).save(square)
+        with self.assertRaisesRegex(project.Invalid, "crop it to this shape"):
+            self.painter.take_artwork(square.read_bytes(), False)
+        with self.assertRaises(luxfer.Error):  # a picture without the marks of a sheet
+            self.painter.take_artwork(square.read_bytes(), True)
+        with self.assertRaises(luxfer.errors.NotReady):
+            self.painter.out("painting", self.folder)
+        self.assertIsNone(self.painter.own)
 
 
 class Programs(Case):
@@ -118,6 +288,11 @@ class Programs(Case):
         self.assertIn(f"transfer.set_zones({zones})", text)
         self.assertIn(f"without(mask, {removed}, ", text)
         self.assertNotIn("without(", self.text(zones=zones))
+        for changes in ({"mix": {"1": 0.5}}, {"added": [[1, 2.0, 3.0]]}):
+            text = self.text(**changes)
+            ast.parse(text)
+            self.assertIn("mix.apply(transfer, *lamps)", text)
+        self.assertNotIn("mix", self.text(mix={"1": 1.0}))
 
     def test_a_plan_has_only_the_settings_of_a_plan(self):
         good = {"samples": 64, "target_error": 0.1, "seed": 0}
@@ -171,11 +346,13 @@ class Planes(Case):
         messages = []
         room = self.room()
         thread = SimpleNamespace(finish=lambda job: job.wait())
-        light = Light(demo()[0], room, thread, lambda kind, **header: messages.append(header))
+        studio = Light(demo()[0], room, thread, lambda kind, **header: messages.append(header))
         room.add_light(kind="point", position=(0, 5, 0), intensity=(100, 100, 100))
-        light.lit = room
-        light.measure(surface)
-        return messages[-1], light.exposure
+        studio.lit = room
+        studio.transfer = SimpleNamespace(scene=lambda which: room)
+        studio.choose_exposure(surface)
+        studio.measure(project.checked({"luxfer_studio": 1, "photo": {"name": "a.png", "sha256": "0" * 64}}), surface)
+        return messages[-1], studio.exposure
 
     def test_the_page_receives_the_height_above_the_floor(self):
         message, _ = self.measured("Ceiling")

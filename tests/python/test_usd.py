@@ -6,6 +6,7 @@ import struct
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 from support import in_ci
@@ -191,6 +192,18 @@ class Files(unittest.TestCase):
         render.set_camera(position=(0, 0, 5), target=(0, 0, 9))
         picture = render.run(width=4, height=4, samples=4).image().numpy()
         np.testing.assert_allclose(picture, np.broadcast_to((3, 1.5, 0), (4, 4, 3)), rtol=1e-6)
+
+    def test_the_studio_saves_its_lit_room(self):
+        from luxfer.studio import results
+
+        room = luxfer.Scene.demo(self.context, "target-room")
+        room.place_emission("Ceiling", np.ones((4, 4, 3), np.float32), (300, 200, 100))
+        path = self.folder / "room.usdz"
+        results.write("usd", path, None, SimpleNamespace(lit=room))
+        again = luxfer.usd.load(self.context, path)
+        self.assertEqual(again.counts.triangles, room.counts.triangles)
+        brightest = max(again.material(i)["emission"][0] for i in range(again.counts.materials))
+        self.assertAlmostEqual(brightest, 300, places=2)
 
     def test_what_is_wrong_is_an_error(self):
         stage = self.stage()

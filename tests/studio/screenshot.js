@@ -2,7 +2,18 @@
 
 import { mkdirSync } from "node:fs";
 import { join, resolve } from "node:path";
-import { browse, changed, folder, missing, open, paint, serve, state, STROKES } from "./studio.js";
+import {
+  browse,
+  changed,
+  closeBrowser,
+  folder,
+  missing,
+  open,
+  paint,
+  serve,
+  state,
+  STROKES,
+} from "./studio.js";
 
 const out = resolve(process.argv[2]);
 const reason = missing();
@@ -23,11 +34,12 @@ try {
   await page.waitForFunction(
     () =>
       !document.getElementById("label-before").hidden &&
-      /\d+ s|ms/.test(document.getElementById("planned").textContent),
+      /Planned: \d/.test(document.getElementById("planned").textContent),
   );
   mkdirSync(out, { recursive: true });
   await page.screenshot({ path: join(out, "studio.png") });
 } finally {
   for (const end of ends.reverse()) await end();
+  await closeBrowser();
 }
 process.exit(0);

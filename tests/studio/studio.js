@@ -36,7 +36,7 @@ export function missing() {
   return false;
 }
 
-/** A folder that is deleted when all tests have ended, and with them the browsers and servers that use it. */
+/** A folder that is deleted when all tests have ended, and with them the servers that use it. */
 export function folder() {
   const out = mkdtempSync(join(tmpdir(), "luxfer-studio-test-"));
   process.on("exit", () => rmSync(out, { recursive: true, force: true, maxRetries: 5 }));
@@ -79,30 +79,35 @@ export async function serve(test, state, args = [], isSmall = true) {
   return { address, port: new URL(address).port, kill: async () => (server.kill("SIGKILL"), ended) };
 }
 
-/** A browser with a profile of its own. */
+let chromiumOfAll = null;
+
+/** Windows with a profile of their own, of the one Chromium of all tests. */
 export async function browse(test, options = {}) {
-  const profile = folder();
-  const browser = await chromium.launchPersistentContext(profile, {
-    executablePath: CHROMIUM,
-    args: FLAGS,
-    viewport: { width: 1440, height: 900 },
-    acceptDownloads: true,
-    ...options,
-  });
+  chromiumOfAll ??= chromium.launch({ executablePath: CHROMIUM, args: FLAGS });
+  const browser = await (await chromiumOfAll).newContext({ viewport: { width: 1440, height: 900 }, ...options });
   browser.setDefaultTimeout(WAIT_MS);
   test.after(() => browser.close());
   return browser;
 }
 
+/** Ends Chromium, after the last test. */
+export async function closeBrowser() {
+  await (await chromiumOfAll)?.close();
+}
+
+const isLit = () => document.body.dataset.texture && document.body.dataset.noise;
+/** The page has its first results; those of the light need not be waited for. */
+export const isThere = () => document.body.dataset.last;
+
 /** A page of the studio, whose errors fail the test. */
-export async function open(test, browser, address) {
+export async function open(test, browser, address, isReady = isLit) {
   const page = await browser.newPage();
   const errors = [];
   page.on("pageerror", (error) => errors.push(String(error)));
   page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
   page.problems = errors;
   await page.goto(address);
-  await page.waitForFunction(() => document.body.dataset.texture && document.body.dataset.noise);
+  await page.waitForFunction(isReady);
   return page;
 }
 

@@ -4,11 +4,34 @@ import assert from "node:assert/strict";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createServer, request } from "node:http";
 import { join } from "node:path";
-import { test } from "node:test";
-import { browse, changed, folder, missing, open, paint, picture, place, serve, state, STROKES } from "./studio.js";
+import { after, test } from "node:test";
+import {
+  browse,
+  changed,
+  closeBrowser,
+  folder,
+  isThere,
+  missing,
+  open,
+  paint,
+  picture,
+  place,
+  serve,
+  state,
+  STROKES,
+} from "./studio.js";
 
 const skip = missing();
 if (skip && process.env.CI) throw new Error(skip);
+
+/** The server of the tests that need none of their own. */
+const shared = { ends: [], after: (work) => shared.ends.push(work) };
+let sharedServer = null;
+const server = () => (sharedServer ??= serve(shared, folder()));
+after(async () => {
+  for (const end of shared.ends) await end();
+  await closeBrowser();
+});
 
 /** Clicks a button that downloads, and returns the file's text or bytes. */
 async function download(page, id, encoding) {
@@ -34,11 +57,28 @@ function sizeOfExr(data) {
   return [right - left + 1, bottom - top + 1];
 }
 
-/** Paints the three strokes, each of which changes the masks. */
-async function paintAll(page) {
+/** The codes of all warnings of the library. */
+function warningCodes() {
+  const text = readFileSync(new URL("../../bindings/python/luxfer/types.py", import.meta.url), "utf8");
+  const body = /class WarningCode\(IntEnum\):(.*?)\nclass /s.exec(text)[1];
+  return [...body.matchAll(/^    ([A-Z_]+) = \d+$/gm)].map((found) => found[1]);
+}
+
+/** Warnings whose advice by the library names functions, settings or matrices. */
+const OF_PROGRAMS = new Set(
+  ("FOCAL_ASSUMED VIEW_UNCERTAIN LAYOUT_UNCERTAIN PATTERN_UNCERTAIN NO_LATTICE NO_PATTERN UNREACHABLE MISSED_STROKES " +
+    "IMPLAUSIBLE_SIZE FAR_FROM_ORIGIN").split(" "),
+);
+
+/** Paints the three strokes; each of them changes the masks, for which is waited if `isPatient`. */
+async function paintAll(page, isPatient = true) {
+  const before = await state(page, "rounds");
   for (const [tool, ...places] of STROKES) {
-    await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));
+    const last = await state(page, "rounds");
+    await paint(page, tool, ...places);
+    if (isPatient) await changed(page, "rounds", last);
   }
+  await changed(page, "rounds", before);
   await page.waitForFunction(() => document.body.dataset.strokes === "3" && document.body.dataset.proposed === "");
 }
 
@@ -111,14 +151,14 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
   await other.waitForFunction((masks) => document.body.dataset.masks === masks, made.masks);
   await other.waitForFunction((texture) => document.body.dataset.texture === texture, made.texture);
   await other.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps);
-  await settled(other);
+  await other.waitForFunction((texture) => document.body.dataset.luxOf === texture, made.texture);
   assert.equal(await download(other, "csv", "utf8"), csv);
   assert.deepEqual([...page.problems, ...other.problems], []);
 });
 
 test("by keys alone", { skip }, async (t) => {
-  const server = await serve(t, folder());
-  const page = await open(t, await browse(t), server.address);
+  const { address } = await server();
+  const page = await open(t, await browse(t), address);
   const before = await state(page, "masks");
   // Tab reaches the photo; nothing is clicked in this test.
   for (let i = 0; i < 30 && (await page.evaluate(() => document.activeElement.id)) !== "photo"; i++)
@@ -150,10 +190,179 @@ test("by keys alone", { skip }, async (t) => {
   assert.deepEqual(page.problems, []);
 });
 
-test("windows of any size, light and dark", { skip }, async (t) => {
-  const server = await serve(t, folder());
-  const browser = await browse(t, { colorScheme: "dark" });
-  const page = await open(t, browser, server.address);
+/** What the page says of the illuminance, once it has another value. */
+async function otherLux(page, before) {
+  const mean = () => page.evaluate(() => document.getElementById("lux").dataset.mean);
+  await page.waitForFunction((before) => document.getElementById("lux").dataset.mean !== before, before ?? "");
+  return mean();
+}
+
+test("the lamps by hand: shift, turn, size, mix, mean, and another ceiling", { skip }, async (t) => {
+  const { address } = await server();
+  const page = await open(t, await browse(t), address);
+  const offset = async () => [await page.locator("#across").inputValue(), await page.locator("#along").inputValue()];
+  assert.deepEqual(await offset(), ["0", "0"]);
+
+  // On the plan: the drag is a shift by its metres, 6 m over the width of the ceiling.
+  const plan = await page.locator("#lamp-plan").boundingBox();
+  let texture = await state(page, "texture");
+  const original = texture;
+  await page.mouse.move(plan.x + plan.width / 2, plan.y + plan.height / 2);
+  await page.mouse.down();
+  await page.mouse.move(plan.x + 0.6 * plan.width, plan.y + plan.height / 2, { steps: 3 });
+  await page.mouse.up();
+  texture = await changed(page, "texture", texture);
+  const [across, along] = (await offset()).map(Number);
+  assert.ok(Math.abs(across - 0.6) < 0.03 && Math.abs(along) < 0.03, `${across}, ${along}`);
+
+  // On the ceiling in the room, and by keys.
+  const room = await page.locator("#room").boundingBox();
+  await page.locator("label:has(#room-tool-shift)").click();
+  await page.mouse.move(room.x + 0.4 * room.width, room.y + 0.1 * room.height);
+  await page.mouse.down();
+  await page.mouse.move(room.x + 0.5 * room.width, room.y + 0.1 * room.height, { steps: 3 });
+  await picture(page, "6-shift");
+  await page.mouse.up();
+  texture = await changed(page, "texture", texture);
+  assert.notDeepEqual((await offset()).map(Number), [across, along]);
+  await page.locator("label:has(#room-tool-turn)").click();
+  await page.locator("#room").focus();
+  await page.keyboard.press("ArrowRight");
+  texture = await changed(page, "texture", texture);
+  assert.equal(await page.locator("#turn").inputValue(), "1");
+  await page.locator("label:has(#room-tool-size)").click();
+  await page.locator("#room").focus();
+  await page.keyboard.press("ArrowUp");
+  texture = await changed(page, "texture", texture);
+  assert.equal(await page.locator("#scale").inputValue(), "lamp");
+  for (let i = 0; i < 4; i++) await page.locator("#undo").click();
+  assert.deepEqual(await offset(), ["0", "0"]);
+  await page.waitForFunction((of) => {
+    const { lampsOf, luxOf, texture } = document.body.dataset;
+    return texture === of && lampsOf === of && luxOf === of;
+  }, original);
+  const full = await otherLux(page);
+
+  // A lamp is added where the plan is clicked, and taken out again.
+  const count = async () => Number(await page.locator("#lamps-count").innerText());
+  const lamps = await count();
+  await page.locator(".kind summary").first().click();
+  await page.getByRole("button", { name: "Add one" }).first().click();
+  const free = { x: 0.27 * plan.width, y: 0.4 * plan.height };
+  await page.locator("#lamp-plan").click({ position: free });
+  await page.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps + 1);
+  await picture(page, "6-added");
+  await page.locator("#lamp-plan").click({ position: free });
+  await page.waitForFunction((n) => document.getElementById("lamps-count").textContent === String(n), lamps);
+
+  await page.waitForFunction((full) => document.getElementById("lux").dataset.mean === full, full);
+
+  // Light: a kind at half, then the wanted mean.
+  await page.locator(".dimmer input").first().fill("50");
+  const dimmed = await otherLux(page, full);
+  assert.ok(Number(dimmed) < 0.95 * Number(full), `${full} to ${dimmed} lx`);
+  await page.locator("#lux-wish").fill("400");
+  await page.locator("#lux-bring").click();
+  const brought = await otherLux(page, dimmed);
+  assert.ok(Math.abs(Number(brought) - 400) < 8, `${brought} lx`);
+  await page.selectOption("#lux-plane", { label: "Table" });
+  await otherLux(page, brought);
+  assert.match(await page.locator("#lux").innerText(), /On the front of Table/);
+
+  // A click on another candidate makes it the ceiling.
+  await page.locator("label:has(#room-tool-choose)").click();
+  await picture(page, "7-candidates");
+  await page.locator("#room").focus();
+  await page.keyboard.press("ArrowRight");
+  assert.notEqual(await page.locator("#surface").inputValue(), "Ceiling");
+  await page.mouse.click(room.x + 0.4 * room.width, room.y + 0.06 * room.height);
+  assert.match(await page.locator("#surface").inputValue(), /Ceiling|White plaster/);
+  assert.deepEqual(page.problems, []);
+});
+
+test("stylise: what is painted on the ball is painted on the picture", { skip }, async (t) => {
+  const { address } = await server();
+  const browser = await browse(t);
+  const page = await open(t, browser, address, isThere);
+  await page.locator("#tab-light").focus();
+  await page.keyboard.press("ArrowRight");
+  await page.waitForFunction(() => document.body.dataset.painting);
+  const before = await state(page, "painting");
+  const box = await page.locator("#artwork").boundingBox();
+  await page.mouse.move(box.x + 0.4 * box.width, box.y + 0.4 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.6 * box.width, box.y + 0.5 * box.height, { steps: 4 });
+  await page.mouse.up();
+  await page.waitForFunction((b) => document.body.dataset.painting && document.body.dataset.painting !== b, before);
+  assert.ok(await page.locator("#artwork-own").isChecked());
+  await picture(page, "8-stylise");
+  for (const width of [1440, 390]) {
+    await page.setViewportSize({ width, height: 800 });
+    const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+    assert.ok(wide <= width, `at ${width} pixels the page is ${wide} wide`);
+  }
+  const [file] = await Promise.all([page.waitForEvent("download"), page.locator("#out-painting").click()]);
+  assert.equal(readFileSync(await file.path()).subarray(1, 4).toString(), "PNG");
+  await page.locator("#artwork-file").setInputFiles({ name: "a.png", mimeType: "image/png", buffer: Buffer.from("x") });
+  await page.locator("#notice-text", { hasText: "the artwork cannot be used" }).waitFor();
+  assert.deepEqual(
+    page.problems.filter((p) => !/400/.test(p)),
+    [],
+  );
+  // The artwork is still there after the page has been loaded anew.
+  await page.reload();
+  await page.waitForFunction(() => document.getElementById("artwork-own")?.checked);
+});
+
+test("every warning of the library is shown, with what to do here", { skip }, async (t) => {
+  const { address } = await server();
+  const page = await (await browse(t)).newPage();
+  const codes = warningCodes();
+  let give = null;
+  await page.routeWebSocket(/\/ws/, (socket) => {
+    socket.connectToServer().onMessage((message) => {
+      const header = JSON.parse(message.subarray(4, 4 + message.readUInt32LE(0)).toString());
+      if (!["warnings", "doubt", "room"].includes(header.type)) socket.send(message);
+    });
+    give = (header) => {
+      const text = Buffer.from(JSON.stringify(header));
+      const size = Buffer.alloc(4);
+      size.writeUInt32LE(text.length);
+      socket.send(Buffer.concat([size, text]));
+    };
+  });
+  await page.goto(address);
+  await page.waitForFunction(() => document.body.dataset.last);
+  const list = codes.map((code, i) => ({
+    code,
+    stage: "lights",
+    message: `message of ${code}`,
+    advice: "call luxfer_own_advice",
+    at: [5 * i, 10],
+  }));
+  give({ type: "warnings", list });
+  await page.locator("#notes", { hasText: `Message of ${codes.at(-1)}` }).waitFor();
+  const shown = await page.locator("#notes").innerText();
+  for (const code of codes.filter((c) => c !== "PROPOSED"))
+    assert.ok(shown.includes(`Message of ${code}`), `no note of ${code}`);
+  assert.match(shown, /Proposal/);
+  assert.equal(await page.locator("#notes-count").innerText(), String(codes.length));
+  // Every advice that speaks of functions or settings has one for this page.
+  for (const code of codes.filter((c) => OF_PROGRAMS.has(c))) {
+    const note = page.locator("#notes li", { hasText: new RegExp(`Message of ${code}\\.`) });
+    assert.ok(!(await note.innerText()).includes("luxfer_own_advice"), `the advice of ${code} is for programs`);
+  }
+});
+
+test("by touch, in windows of any size, light and dark", { skip }, async (t) => {
+  const { address } = await server();
+  const browser = await browse(t, { colorScheme: "dark", hasTouch: true, viewport: { width: 800, height: 900 } });
+  const page = await open(t, browser, address);
+  const before = await state(page, "rounds");
+  await page.locator("label:has(#tool-not-plane)").tap();
+  const [x, y] = await place(page, 0.5, 0.95);
+  await changed(page, "rounds", before, () => page.touchscreen.tap(x, y));
+  assert.equal(await state(page, "strokes"), "1");
   const background = () => page.evaluate(() => getComputedStyle(document.body).backgroundColor);
   assert.equal(await background(), "rgb(23, 25, 28)");
   for (const [width, height] of [
@@ -181,30 +390,19 @@ test("windows of any size, light and dark", { skip }, async (t) => {
   assert.equal(await background(), "rgb(244, 244, 242)");
 });
 
-test("by touch", { skip }, async (t) => {
-  const server = await serve(t, folder());
-  const browser = await browse(t, { hasTouch: true, viewport: { width: 800, height: 900 } });
-  const page = await open(t, browser, server.address);
-  const before = await state(page, "rounds");
-  await page.locator("label:has(#tool-not-plane)").tap();
-  const [x, y] = await place(page, 0.5, 0.95);
-  await changed(page, "rounds", before, () => page.touchscreen.tap(x, y));
-  assert.equal(await state(page, "strokes"), "1");
-});
-
 test("two users at once", { skip }, async (t) => {
-  const server = await serve(t, folder());
+  const { address } = await server();
   const [one, two] = await Promise.all([
-    open(t, await browse(t), server.address),
-    open(t, await browse(t), server.address),
+    open(t, await browse(t), address),
+    open(t, await browse(t), address),
   ]);
   for (const [page, strokes] of [
     [one, STROKES.slice(0, 2)],
     [two, STROKES.slice(2)],
   ]) {
-    for (const [tool, ...places] of strokes) {
-      await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));
-    }
+    const before = await state(page, "rounds");
+    for (const [tool, ...places] of strokes) await paint(page, tool, ...places);
+    await changed(page, "rounds", before);
   }
   assert.notEqual(await state(one, "masks"), await state(two, "masks"));
   assert.equal(await state(one, "strokes"), "2");
@@ -216,7 +414,7 @@ test("a killed server loses no stroke", { skip }, async (t) => {
   const first = await serve(t, place);
   const browser = await browse(t);
   const page = await open(t, browser, first.address);
-  await paintAll(page);
+  await paintAll(page, false);
   const made = await state(page, "masks");
   await first.kill();
   await page.locator("#notice").waitFor();
@@ -233,15 +431,15 @@ test("a killed server loses no stroke", { skip }, async (t) => {
   assert.match(await again.locator("#notice-text").innerText(), /is back/);
   // The masks follow the stroke that the first server has not seen.
   assert.notEqual(made, "");
-  assert.notEqual((await settled(again)).masks, made);
+  assert.notEqual(await state(again, "masks"), made);
 });
 
 test("who is not let in, and files that are none", { skip }, async (t) => {
-  const server = await serve(t, folder());
+  const { address } = await server();
   const browser = await browse(t);
-  const page = await open(t, browser, server.address);
+  const page = await open(t, browser, address, isThere);
   const wrong = await browser.newPage();
-  const answer = await wrong.goto(server.address.replace(/\/[^/]+\/$/, "/wrong-token/"));
+  const answer = await wrong.goto(address.replace(/\/[^/]+\/$/, "/wrong-token/"));
   assert.equal(answer.status(), 403);
   assert.match(await wrong.locator("body").innerText(), /token/);
 
@@ -265,13 +463,13 @@ test("who is not let in, and files that are none", { skip }, async (t) => {
       s.onerror = () => done("refused");
     });
     return { asked, read, socket };
-  }, server.address);
+  }, address);
   assert.deepEqual(tried, { asked: "refused", read: "refused", socket: "refused" });
   // The browser hides answers by itself, so the server is asked directly, as a browser asks for that page.
   const origin = `http://127.0.0.1:${foreign.address().port}`;
-  assert.equal(await status(`${server.address}start`, {}), 200);
-  assert.equal(await status(`${server.address}start`, { origin }), 403);
-  assert.equal(await status(`${server.address}start`, { "sec-fetch-site": "cross-site" }), 403);
+  assert.equal(await status(`${address}start`, {}), 200);
+  assert.equal(await status(`${address}start`, { origin }), 403);
+  assert.equal(await status(`${address}start`, { "sec-fetch-site": "cross-site" }), 403);
 
   await page.locator("#open").click();
   await page
@@ -279,4 +477,22 @@ test("who is not let in, and files that are none", { skip }, async (t) => {
     .setInputFiles({ name: "broken.jpg", mimeType: "image/jpeg", buffer: Buffer.from("no photo") });
   await page.locator("#notice-text", { hasText: "broken.jpg cannot be read" }).waitFor();
   assert.equal(await state(page, "strokes"), "0");
+
+  // A photo that shows nothing: what to do is said, the picture is marked, and nothing is lost.
+  const grey = await page.evaluate(() => {
+    const canvas = Object.assign(document.createElement("canvas"), { width: 300, height: 200 });
+    canvas.getContext("2d").fillStyle = "#888";
+    canvas.getContext("2d").fillRect(0, 0, 300, 200);
+    return canvas.toDataURL().split(",")[1];
+  });
+  await page.locator("#open").click();
+  await page
+    .locator("#files")
+    .setInputFiles({ name: "grey.png", mimeType: "image/png", buffer: Buffer.from(grey, "base64") });
+  await page.locator("#notes", { hasText: "use a photo that shows straight edges" }).waitFor();
+  assert.match(await page.locator("body").getAttribute("class"), /stale/);
+  await picture(page, "9-nothing");
+  await page.locator("#undo").click();
+  await page.waitForFunction(() => !document.body.classList.contains("stale"));
+  assert.match(await page.locator("#names").innerText(), /office\.png/);
 });

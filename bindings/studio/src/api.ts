@@ -20,8 +20,12 @@ const RECONNECT_MS = 1000;
 
 export class Problem extends Error {}
 
-/** An answer of the server as JSON; what it says is wrong is a Problem. */
-export async function ask<T>(path: string, init?: RequestInit): Promise<T> {
+/** An answer of the server, as JSON unless it is read otherwise; what it says is wrong is a Problem. */
+export async function ask<T>(
+  path: string,
+  init?: RequestInit,
+  read: (answer: Response) => Promise<unknown> = (answer) => answer.json(),
+): Promise<T> {
   let answer: Response;
   try {
     answer = await fetch(path, init);
@@ -29,7 +33,7 @@ export async function ask<T>(path: string, init?: RequestInit): Promise<T> {
     throw new Problem("The studio does not answer: has it been ended?");
   }
   if (!answer.ok) throw new Problem(await reason(answer));
-  return (await answer.json()) as T;
+  return (await read(answer)) as T;
 }
 
 async function reason(answer: Response): Promise<string> {
@@ -116,6 +120,11 @@ export class Connection {
   /** Another brightness of the picture, which disturbs no work. */
   expose(exposure: number): void {
     if (this.isUp) this.socket?.send(JSON.stringify({ type: "expose", exposure }));
+  }
+
+  /** A message that is no state of the project. */
+  say(message: Message): void {
+    if (this.isUp) this.socket?.send(JSON.stringify(message));
   }
 
   private take(data: ArrayBuffer): void {

@@ -13,7 +13,8 @@ const KEYS: [string, string][] = [
   ["Photo: Space", "start and end a stroke (Escape: no stroke)"],
   ["Photo: Enter", "a dot"],
   ["Photo: + and −", "zoom"],
-  ["Room: arrow keys, + and −", "turn and move the view"],
+  ["Room: arrow keys", "turn the view; with another tool, choose the ceiling, or shift, turn or size the lamps"],
+  ["Room: + and −", "move the view"],
   ["Room: Home", "the room's own view"],
 ];
 
@@ -34,14 +35,14 @@ export function showKeys(): void {
 }
 
 /** Calls the action of a key, unless somebody types. */
-export function onKeys(actions: Record<string, () => void>): void {
+export function onKeys(actionOf: (key: string) => (() => void) | undefined): void {
   document.addEventListener("keydown", (event) => {
     const target = event.target as HTMLElement;
     const isText = target instanceof HTMLInputElement && ["number", "text"].includes(target.type);
     if (isText || target instanceof HTMLSelectElement || document.querySelector("dialog[open]")) return;
     const control = event.ctrlKey || event.metaKey;
     const name = `${control ? "Ctrl+" : ""}${control && event.shiftKey ? "Shift+" : ""}${event.key.toLowerCase()}`;
-    const action = actions[name];
+    const action = actionOf(name);
     if (!action || event.altKey) return;
     event.preventDefault();
     action();

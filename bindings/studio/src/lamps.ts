@@ -3,60 +3,73 @@
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
 import { rgbPicture } from "./masks";
+import type { Added } from "./project";
 import type { Spot } from "./room_view";
+import { dot, type Rectangle } from "./surface";
 
 export interface Lamp {
   kind: number;
   position: [number, number, number];
   axis: [number, number, number];
+  normal: [number, number, number];
   size: [number, number];
   flux: number;
   cct: number;
+  added: number | null; // which addition of the user it is
 }
 
 export type Zone = [number, number, number, number];
 
-interface Surface {
-  origin: number[];
-  u_axis: number[];
-  v_axis: number[];
-  size: [number, number];
-}
-
 /** A zone goes this far beyond its lamp, in metres. */
 const BEYOND = 0.02;
+/** A drag of fewer pixels is a click. */
+const CLICK = 5;
+/** The largest factor of a kind of lamp, and the step of its slider, in percent. */
+const MAX_MIX = 200;
+const MIX_STEP = 5;
 
 export class LampList {
   private readonly box = byId("lamps");
   private lamps: Lamp[] = [];
-  private surface: Surface | null = null;
+  private surface: Rectangle | null = null;
   private texture: HTMLCanvasElement | null = null;
   private zones: Zone[] = [];
   private error = 0;
+  private fromTexture = new DOMMatrix(); // from shares of the texture to metres on the surface
+  private mix: Record<string, number> = {};
+  private added: Added[] = [];
+  private isAdding = false; // the next click on the plan adds a lamp
+  private adding = 0; // and this is its kind
+  private isHeld = false; // a slider is being dragged, which a new list would take away
+  onMix: (mix: Record<string, number>) => void = () => {};
+  onShift: (du: number, dv: number) => void = () => {};
+  onAdded: (added: Added[]) => void = () => {};
   onZones: (zones: Zone[]) => void = () => {};
   onShow: (spots: Spot[]) => void = () => {};
 
   setTexture(message: Message, rgb: Uint8Array): void {
-    this.surface = message.surface as unknown as Surface;
-    this.texture = rgbPicture(message.width, message.height, rgb);
-    this.draw();
+    this.surface = message.surface as unknown as Rectangle;
+    this.texture = rgbPicture(message.width, message.height, rgb); // drawn when its lamps come
   }
 
   setLamps(message: Message): void {
     this.lamps = message.list;
     this.error = message.error;
+    const [[a, c, e], [b, d, f]] = message.to_texture as number[][];
+    this.fromTexture = new DOMMatrix([a, b, c, d, e, f]).inverse();
     this.draw();
   }
 
-  setZones(zones: Zone[]): void {
+  setProject({ zones, mix, added }: { zones: Zone[]; mix: Record<string, number>; added: Added[] }): void {
     this.zones = zones;
+    this.added = added;
+    this.mix = mix;
     this.draw();
   }
 
   /** The lamp's box on the surface, in metres from its corner. */
   private zoneOf(lamp: Lamp): Zone {
     const s = this.surface!;
-    const dot = (a: number[], b: number[]) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     const from = lamp.position.map((x, i) => x - s.origin[i]);
     const [u, v] = [dot(from, s.u_axis), dot(from, s.v_axis)];
     const [cos, sin] = [Math.abs(dot(lamp.axis, s.u_axis)), Math.abs(dot(lamp.axis, s.v_axis))];
@@ -66,11 +79,22 @@ export class LampList {
   }
 
   private takeOut(lamps: Lamp[]): void {
+    if (!lamps.length) return;
     this.onShow([]);
-    this.onZones([...this.zones, ...lamps.map((l) => this.zoneOf(l))]);
+    const own = new Set(lamps.map((l) => l.added));
+    const rest = lamps.filter((l) => l.added === null);
+    if (rest.length < lamps.length) this.onAdded(this.added.filter((_, i) => !own.has(i)));
+    if (rest.length) this.onZones([...this.zones, ...rest.map((l) => this.zoneOf(l))]);
   }
 
   private draw(): void {
+    if (this.isHeld) return;
+    const focus = this.box.contains(document.activeElement) ? document.activeElement!.id : "";
+    this.fill();
+    if (focus) document.getElementById(focus)?.focus();
+  }
+
+  private fill(): void {
     byId("lamps-count").textContent = this.lamps.length ? String(this.lamps.length) : "";
     if (!this.surface || !this.texture) {
       this.box.replaceChildren(make("p", { class: "quiet" }, "No lamps yet."));
@@ -88,9 +112,14 @@ export class LampList {
       make(
         "p",
         { class: "quiet" },
-        `${this.lamps.length} lamps, ${short(total)} lm in all (± ${short(100 * this.error)} %)`,
+        this.isAdding
+          ? "Click the place of the new lamp in the plan."
+          : `${this.lamps.length} lamps, ${short(total)} lm in all (± ${short(100 * this.error)} %)`,
       ),
-      ...order.map(([kind, lamps]) => this.kindBox(kind, lamps, open.has(String(kind)))),
+      ...order.flatMap(([kind, lamps]) => [
+        this.kindBox(kind, lamps, open.has(String(kind))),
+        this.dimmer(kind),
+      ]),
       ...(this.zones.length ? [this.taken()] : []),
     );
   }
@@ -108,9 +137,50 @@ export class LampList {
         make("b", {}, title),
         ` · ${lamps.length} × ${size} · ${short(mean((l) => l.flux))} lm · ${10 * Math.round(mean((l) => l.cct) / 10)} K`,
       ),
-      make("button", { type: "button", onclick: () => this.takeOut(lamps) }, `Take all ${lamps.length} out`),
+      make(
+        "p",
+        { class: "row" },
+        make("button", { type: "button", onclick: () => this.takeOut(lamps) }, `Take all ${lamps.length} out`),
+        make("button", { type: "button", onclick: (e) => this.beginAdding(kind, e as MouseEvent) }, "Add one"),
+      ),
       make("ul", {}, ...lamps.map((lamp) => this.row(lamp))),
     );
+  }
+
+  /** The next click on the plan adds a lamp of a kind; with a key, it comes to the middle of the ceiling. */
+  private beginAdding(kind: number, event: MouseEvent): void {
+    if (event.detail === 0) {
+      const [width, height] = this.surface!.size;
+      this.add(kind, [width / 2, height / 2]);
+      return;
+    }
+    this.adding = kind;
+    this.isAdding = true;
+    this.draw();
+  }
+
+  private add(kind: number, at: [number, number]): void {
+    this.isAdding = false;
+    this.onAdded([...this.added, [kind, ...(at.map((x) => Math.round(1000 * x) / 1000) as [number, number])]]);
+  }
+
+  /** The share of its light that a kind gives. */
+  private dimmer(kind: number): HTMLElement {
+    const value = Math.round(100 * (this.mix[kind] ?? 1));
+    const out = make("output", { for: `mix-${kind}` }, `${value} %`);
+    const slider = make("input", { type: "range", id: `mix-${kind}`, min: 0, max: MAX_MIX, step: MIX_STEP, value });
+    slider.oninput = () => {
+      out.textContent = `${slider.value} %`;
+      const { [kind]: _, ...rest } = this.mix;
+      this.onMix(slider.value === "100" ? rest : { ...rest, [kind]: Number(slider.value) / 100 });
+    };
+    slider.onpointerdown = () => (this.isHeld = true);
+    slider.onpointerup = slider.onpointercancel = () => {
+      this.isHeld = false;
+      this.draw();
+    };
+    const label = make("span", {}, kind ? `Light of ${letter(kind)}` : "Light");
+    return make("label", { class: "dimmer" }, label, slider, out);
   }
 
   private row(lamp: Lamp): HTMLElement {
@@ -142,24 +212,36 @@ export class LampList {
     );
   }
 
-  /** The ceiling from below, with its texture; a click takes a lamp out or puts it back. */
+  /** The ceiling from below, with its texture: a click takes a lamp out or puts it back, a drag moves the pattern. */
   private plan(): HTMLElement {
-    const { size } = this.surface!;
-    const [width, height] = size;
-    const canvas = make("canvas", { class: "plan", role: "img" });
+    const [width, height] = this.surface!.size;
+    const canvas = make("canvas", { class: this.isAdding ? "plan adding" : "plan", id: "lamp-plan", role: "img" });
     canvas.setAttribute("aria-label", `Plan of the ceiling, ${short(width)} by ${short(height)} metres`);
     const scale = 2 * Math.min(300 / width, 220 / height);
     canvas.width = Math.max(1, Math.round(width * scale));
     canvas.height = Math.max(1, Math.round(height * scale));
-    const context = canvas.getContext("2d")!;
+    this.drawPlan(canvas.getContext("2d")!, scale, [0, 0]);
+    canvas.title = "Drag the lamps; click one to take it out, or a free place to put it back";
+    this.listen(canvas, scale);
+    return canvas;
+  }
+
+  private drawPlan(context: CanvasRenderingContext2D, scale: number, [du, dv]: [number, number]): void {
+    context.setTransform(1, 0, 0, 1, 0, 0);
     context.fillStyle = "#111";
-    context.fillRect(0, 0, canvas.width, canvas.height);
-    context.drawImage(this.texture!, 0, 0, canvas.width, canvas.height);
+    context.fillRect(0, 0, context.canvas.width, context.canvas.height);
+    context.setTransform(new DOMMatrix().scale(scale).translate(du, dv).multiply(this.fromTexture));
+    context.drawImage(this.texture!, 0, 0, 1, 1);
+    context.setTransform(1, 0, 0, 1, du * scale, dv * scale);
     context.textAlign = "center";
     context.textBaseline = "middle";
     context.font = "bold 20px system-ui, sans-serif";
     for (const lamp of this.lamps) {
       const [u0, v0, u1, v1] = this.zoneOf(lamp).map((x) => x * scale);
+      if (lamp.added !== null) {
+        context.fillStyle = "#fff1dc"; // the texture of the pattern does not have it
+        context.fillRect(u0, v0, u1 - u0, v1 - v0);
+      }
       context.strokeStyle = "#56b4e9";
       context.lineWidth = 2;
       context.strokeRect(u0, v0, u1 - u0, v1 - v0);
@@ -171,15 +253,50 @@ export class LampList {
         context.fillText(letter(lamp.kind), (u0 + u1) / 2, (v0 + v1) / 2);
       }
     }
+    context.setTransform(1, 0, 0, 1, 0, 0);
     for (const zone of this.zones) drawZone(context, zone.map((x) => x * scale) as Zone);
-    canvas.title = "Click a lamp to take it out, or a free place to put it back";
-    canvas.addEventListener("click", (event) => {
-      const at = [(event.offsetX / canvas.clientWidth) * width, (event.offsetY / canvas.clientHeight) * height];
-      const inside = ([u0, v0, u1, v1]: Zone) => at[0] >= u0 && at[0] <= u1 && at[1] >= v0 && at[1] <= v1;
-      if (this.zones.some(inside)) this.onZones(this.zones.filter((z) => !inside(z)));
-      else this.takeOut(this.lamps.filter((l) => inside(this.zoneOf(l))).slice(0, 1));
-    });
-    return canvas;
+  }
+
+  private listen(canvas: HTMLCanvasElement, scale: number): void {
+    const [width, height] = this.surface!.size;
+    const context = canvas.getContext("2d")!;
+    const metres = (x: number, y: number): [number, number] => [
+      (x / canvas.clientWidth) * width,
+      (y / canvas.clientHeight) * height,
+    ];
+    let down: [number, number] | null = null;
+    const shift = (e: PointerEvent) => metres(e.clientX - down![0], e.clientY - down![1]);
+    canvas.onpointerdown = (event) => {
+      down = [event.clientX, event.clientY];
+      canvas.setPointerCapture(event.pointerId);
+      this.isHeld = true;
+    };
+    canvas.onpointermove = (event) => {
+      if (down) this.drawPlan(context, scale, shift(event));
+    };
+    canvas.onpointercancel = () => this.release();
+    canvas.onpointerup = (event) => {
+      if (!down) return;
+      const far = Math.hypot(event.clientX - down[0], event.clientY - down[1]);
+      const [moved, at] = [shift(event), metres(event.offsetX, event.offsetY)];
+      down = null;
+      this.release(); // draws the plan anew, which ends this canvas
+      if (far >= CLICK) this.onShift(...moved);
+      else this.toggle(at);
+    };
+  }
+
+  private release(): void {
+    this.isHeld = false;
+    this.draw();
+  }
+
+  /** Takes out the lamp at a place, or puts back what was there. */
+  private toggle(at: [number, number]): void {
+    if (this.isAdding) return this.add(this.adding, at);
+    const inside = ([u0, v0, u1, v1]: Zone) => at[0] >= u0 && at[0] <= u1 && at[1] >= v0 && at[1] <= v1;
+    if (this.zones.some(inside)) this.onZones(this.zones.filter((z) => !inside(z)));
+    else this.takeOut(this.lamps.filter((l) => inside(this.zoneOf(l))).slice(0, 1));
   }
 }
 

@@ -2,6 +2,7 @@
 
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
+import type { LuxPlane } from "./project";
 
 /** Cividis by Nuñez, Anderton and Renslow, at eleven steps: dark blue to yellow. */
 const CIVIDIS = [
@@ -30,37 +31,105 @@ export function colourAt(share: number): string {
   return `rgb(${mix.join(",")})`;
 }
 
-export function showLux(message: Message): void {
-  if (message.problem) {
-    byId("lux").replaceChildren(make("p", { class: "quiet" }, message.problem as string));
-    delete byId("lux").dataset.mean;
-    return;
+const DESK = "desk";
+const DESK_HEIGHT = 0.75;
+
+/** The illuminance: its plane, its numbers, and the wish for another mean. */
+export class LuxPanel {
+  private readonly plane = make("select", { id: "lux-plane" });
+  private readonly height = make("input", { type: "number", id: "lux-height", min: 0, max: 100, step: 0.05 });
+  private readonly wish = make("input", {
+    type: "number",
+    id: "lux-wish",
+    min: 1,
+    max: 100000,
+    step: "any",
+    value: 500, // [convention: EN 12464-1, offices]
+  });
+  private readonly bring = make("button", { type: "button", id: "lux-bring", disabled: true }, "Set the mean");
+  private readonly result = make("div", { class: "lux-result" });
+  private readonly where = make("p", { class: "quiet" });
+  private mean = 0;
+  onPlane: (plane: LuxPlane) => void = () => {};
+  /** All lamps give this many times the light. */
+  onFactor: (factor: number) => void = () => {};
+
+  constructor() {
+    const small = (label: string, input: HTMLElement, unit = "") =>
+      make("label", { class: "inline" }, label, input, unit);
+    byId("lux").append(
+      this.result,
+      make("p", { class: "row" }, small("Plane ", this.plane), small("at ", this.height, " m")),
+      make("p", { class: "row" }, small("Wanted mean ", this.wish, " lx"), this.bring),
+      this.where,
+    );
+    this.bring.title = "Dims all lamps together, or brightens them, until this plane has the mean";
+    this.plane.onchange = () => this.tell();
+    this.height.onchange = () => this.tell();
+    this.bring.onclick = () => {
+      const wanted = Number(this.wish.value);
+      if (wanted > 0 && this.mean > 0) this.onFactor(wanted / this.mean);
+    };
   }
-  const values = message.values as number[][];
-  const { minimum, mean, maximum, error } = message as unknown as Record<string, number>;
-  const numbers: [string, string][] = [
-    ["mean", `${short(mean)} lx ± ${short(error)}`],
-    ["lowest", `${short(minimum)} lx`],
-    ["highest", `${short(maximum)} lx`],
-    ["uniformity", mean > 0 ? short(minimum / mean) : "–"],
-  ];
-  byId("lux").replaceChildren(
-    plan(values, message.size as [number, number], maximum),
-    make(
-      "dl",
-      { class: "numbers" },
-      ...numbers.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]),
-    ),
-    make(
-      "p",
-      { class: "quiet" },
-      `On a plane ${short(message.height as number)} m above the floor, ` +
-        `${distances(message.insets as number[])} from the walls. ± is 95 %.${
-        message.inside ? ` ${message.inside} points lie inside of furniture and do not count.` : ""
-      }`,
-    ),
-  );
-  byId("lux").dataset.mean = String(mean);
+
+  private tell(): void {
+    const surface = this.plane.value === DESK ? null : this.plane.value.slice(1);
+    const stated = Number(this.height.value);
+    const height = this.height.value !== "" && stated >= 0 && stated <= 100 ? stated : DESK_HEIGHT;
+    this.onPlane({ surface, height });
+  }
+
+  /** The surfaces of the room, any of which can be the plane. */
+  setSurfaces(names: string[]): void {
+    this.plane.replaceChildren(
+      make("option", { value: DESK }, "above the floor"),
+      ...names.map((name) => make("option", { value: `/${name}` }, name)),
+    );
+  }
+
+  setProject(plane: LuxPlane): void {
+    this.plane.value = plane.surface === null ? DESK : `/${plane.surface}`;
+    this.height.value = String(plane.height);
+    this.height.closest("label")!.hidden = plane.surface !== null;
+  }
+
+  show(message: Message): void {
+    byId("lux").dataset.mean = message.problem ? "" : String(message.mean);
+    this.mean = message.problem ? 0 : (message.mean as number);
+    this.bring.disabled = !(this.mean > 0);
+    if (message.problem) {
+      this.result.replaceChildren();
+      this.where.textContent = message.problem as string;
+      return;
+    }
+    const { minimum, mean, maximum, error } = message as unknown as Record<string, number>;
+    const numbers: [string, string][] = [
+      ["mean", `${short(mean)} lx ± ${short(error)}`],
+      ["lowest", `${short(minimum)} lx`],
+      ["highest", `${short(maximum)} lx`],
+      ["uniformity", mean > 0 ? short(minimum / mean) : "–"],
+    ];
+    this.result.replaceChildren(
+      plan(message.values as number[][], message.size as [number, number], maximum),
+      make(
+        "dl",
+        { class: "numbers" },
+        ...numbers.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]),
+      ),
+    );
+    this.where.textContent = words(message);
+  }
+}
+
+/** Where the plane lies, and which points do not count. */
+function words(message: Message): string {
+  const inside = message.inside as number;
+  const where = message.surface
+    ? `On the front of ${message.surface as string}.`
+    : `On a plane ${short(message.height as number)} m above the floor, ` +
+      `${distances(message.insets as number[])} from the walls.`;
+  const left = inside === 1 ? " 1 point lies" : ` ${inside} points lie`;
+  return `${where} ± is 95 %.${inside ? `${left} inside of furniture or in the dark, which does not count.` : ""}`;
 }
 
 /** The distances of the plane from the walls along both of its sides. */

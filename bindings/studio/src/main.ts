@@ -4,7 +4,12 @@ import { ask, Problem, type Start } from "./api";
 import { byId, notice } from "./dom";
 import { Page } from "./page";
 import { hasWork, kept, newSession, Store, type Project } from "./project";
-import "./style.css";
+import "./style_base.css";
+import "./style_layout.css";
+import "./style_views.css";
+import "./style_panels.css";
+import "./style_stylise.css";
+import "./style_windows.css";
 
 const SESSION_KEY = "luxfer-studio-session";
 

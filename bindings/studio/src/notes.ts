@@ -1,5 +1,6 @@
 // What the library says about its results: proposals, warnings, and where one more stroke helps most.
 
+import { adviceFor } from "./advice";
 import type { Message } from "./api";
 import { byId, make } from "./dom";
 import type { Mark } from "./marks";
@@ -25,13 +26,31 @@ const STAGES: Record<string, string> = {
 const MASKS: Record<string, string> = { plane: "plane", lights: "lights" };
 
 export class Notes {
+  private room: Warning[] = [];
   private warnings: Warning[] = [];
   private doubt: { phase: string; at: [number, number] } | null = null;
+  private isKnown = false; // whether the library has looked at the photo
   private failure = "";
   onMarks: (marks: Mark[]) => void = () => {};
 
+  /** Warnings about the room, which stay until another room is opened. */
+  setRoom(message: Message): void {
+    this.room = (message.warnings as Warning[]).map((w) => ({ ...w, stage: "scene", at: null }));
+    this.draw();
+  }
+
   setWarnings(message: Message): void {
-    this.warnings = message.list;
+    this.isKnown = true;
+    this.warnings = (message.list as Warning[]).filter((w) => w.stage !== "scene");
+    this.draw();
+  }
+
+  /** Forgets what was said of a photo. */
+  clear(): void {
+    this.warnings = [];
+    this.isKnown = false;
+    this.doubt = null;
+    this.failure = "";
     this.draw();
   }
 
@@ -52,7 +71,8 @@ export class Notes {
 
   private draw(): void {
     const proposed = this.proposed;
-    const rest = this.warnings.filter((w) => w.code !== "PROPOSED" && !(w.code === "UNSEEN" && this.doubt));
+    const isSaid = (code: string) => code === "PROPOSED" || (code === "UNSEEN" && this.doubt !== null);
+    const rest = [...this.room, ...this.warnings].filter((w) => !isSaid(w.code));
     const marks: Mark[] = [];
     const items: HTMLElement[] = [];
     if (this.failure) items.push(item("error", "!", make("b", {}, "Failed: "), this.failure));
@@ -75,7 +95,8 @@ export class Notes {
     rest.forEach((warning, index) => {
       const sign = String(index + 1);
       if (warning.at) marks.push({ at: warning.at, text: sign, isMain: false });
-      const advice = warning.advice ? make("span", { class: "advice" }, sentence(warning.advice)) : "";
+      const said = adviceFor(warning.code, warning.advice);
+      const advice = said ? make("span", { class: "advice" }, sentence(said)) : "";
       items.push(
         item(
           "warning",
@@ -87,7 +108,7 @@ export class Notes {
         ),
       );
     });
-    if (!items.length) items.push(item("fine", "✓", "Nothing to doubt."));
+    if (!items.length && this.isKnown) items.push(item("fine", "✓", "Nothing to doubt."));
     byId("notes").replaceChildren(...items);
     byId("notes-count").textContent = items.length > 1 || rest.length ? String(items.length) : "";
     this.onMarks(marks);

@@ -5,9 +5,12 @@ import { byId, make, notice } from "./dom";
 
 const KINDS: [string, string, string][] = [
   ["glb", "Room (GLB)", "the room with its lamps, in cd/m², for Blender and other programs"],
-  ["exr", "Picture (EXR)", "linear, in cd/m²"],
+  ["usd", "Room (USD)", "the same as .usdz, for Omniverse, Houdini and others"],
   ["png", "Picture (PNG)", "at the exposure shown"],
-  ["csv", "Luminaires (CSV)", "every lamp: place in metres, size, cd/m², lumens, kelvin"],
+  ["exr", "Picture (EXR)", "linear, in cd/m²"],
+  ["csv", "Lamps (CSV)", "the schedule: place in metres, size, cd/m², lumens, kelvin"],
+  ["json", "Lamps (JSON)", "the schedule with the outlines of the lamps"],
+  ["photometry", "IES and LDT", "a zip with both files for each kind of lamp"],
   ["project", "Project (JSON)", "opens here again with the same result"],
   ["program", "Program (Python)", "does the same without the studio"],
 ];

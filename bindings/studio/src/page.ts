@@ -5,16 +5,19 @@ import { ask, Connection, Problem, type Message, type Start } from "./api";
 import { byId, hideNotice, make, notice, percent, seconds, short } from "./dom";
 import { onKeys, showKeys } from "./keys";
 import { LampList } from "./lamps";
-import { showLux } from "./lux";
+import { LuxPanel } from "./lux";
 import { maskPicture, rgbPicture, type Masks } from "./masks";
 import { Notes } from "./notes";
 import { Opener } from "./open";
 import { showOut } from "./out";
 import { PatternForm } from "./pattern";
 import { PhotoView } from "./photo_view";
-import type { Project, Store, Stroke } from "./project";
+import { PLAIN_LAMPS, type Project, type Store, type Stroke } from "./project";
+import { RoomTools } from "./room_tools";
 import { RoomView } from "./room_view";
 import { TOOLS, type Tool } from "./strokes";
+import { Stylise } from "./stylise";
+import { shiftBy } from "./surface";
 import { Trade } from "./trade";
 
 const STAGES: Record<string, string> = {
@@ -27,13 +30,22 @@ const STAGES: Record<string, string> = {
   plan: "planning",
 };
 
+/** Stages of the other tab; the last one ends its work. */
+const OF_STYLISE = new Set(["guides", "painting", ""]);
+
+/** What belongs to a room and means nothing in another one. */
+const EMPTY_ROOM = { surface: null, ...PLAIN_LAMPS, lux_plane: { surface: null, height: 0.75 }, camera: null };
+
 export class Page {
   readonly photo = new PhotoView();
   readonly room = new RoomView();
+  readonly roomTools = new RoomTools(byId("room-tools"), this.room);
   readonly notes = new Notes();
   readonly lamps = new LampList();
   readonly pattern = new PatternForm();
   readonly trade = new Trade();
+  readonly lux = new LuxPanel();
+  readonly stylise: Stylise;
   readonly connection: Connection;
   private draft: Stroke | null = null;
   private compare = "off";
@@ -47,11 +59,14 @@ export class Page {
     readonly start: Start,
   ) {
     this.connection = new Connection(store.session);
+    this.stylise = new Stylise(store.session);
+    this.stylise.send = (message) => this.connection.say(message);
     this.connection.current = () => ({ project: this.withDraft(), compare: this.compare, draft: false });
     this.connection.onMessage = (message, payload) => this.take(message, payload);
     this.connection.onState = (isUp) => this.connected(isUp);
     store.onChange = (what) => this.changed(what);
     this.tools();
+    this.tabs();
     this.listen();
     this.show();
     this.connection.open();
@@ -80,13 +95,15 @@ export class Page {
     this.photo.strokes = project.strokes;
     this.photo.removed = project.removed;
     this.photo.redraw();
-    this.lamps.setZones(project.zones);
+    this.lamps.setProject(project);
+    this.lux.setProject(project.lux_plane);
     this.pattern.show(project);
     this.trade.show(project.noise);
     if (project.camera) this.room.setCamera(project.camera, false);
     byId<HTMLButtonElement>("undo").disabled = !this.store.canUndo;
     byId<HTMLButtonElement>("redo").disabled = !this.store.canRedo;
     byId("names").textContent = `${project.photo.name} → ${project.room?.name ?? "generated room"}`;
+    this.hint();
     document.body.dataset.strokes = String(project.strokes.length);
   }
 
@@ -106,8 +123,21 @@ export class Page {
     };
     room.onCamera = (camera) => store.change("camera", { camera });
     this.lamps.onZones = (zones) => store.change(`zones ${zones.length}`, { zones });
+    this.lamps.onAdded = (added) => store.change(`added ${added.length}`, { added });
+    this.lamps.onMix = (mix) => store.change("mix", { mix });
+    this.lamps.onShift = (du, dv) =>
+      store.change("shift", { pattern: shiftBy(du, dv).pattern(store.project.pattern, 0)! });
     this.lamps.onShow = (spots) => room.highlight(spots);
     this.pattern.onChange = (what, patch) => store.change(what, patch);
+    this.roomTools.pattern = () => store.project.pattern;
+    this.roomTools.onPattern = (what, pattern) => store.change(what, { pattern });
+    this.roomTools.onSurface = (surface) => store.change("surface", { surface, ...PLAIN_LAMPS });
+    this.roomTools.onRefused = notice;
+    this.lux.onPlane = (plane) => store.change("plane", { lux_plane: plane });
+    this.lux.onFactor = (factor) => {
+      const white = Number((store.project.white * factor).toPrecision(4));
+      store.change("white", { white: Math.min(1e6, Math.max(1e-3, white)) });
+    };
     this.trade.onNoise = (noise) => store.change("noise", { noise });
     this.notes.onMarks = (marks) => {
       photo.marks = marks;
@@ -115,7 +145,7 @@ export class Page {
     };
     const opener = new Opener({
       photo: (file) => this.open({ ...store.project, photo: file, strokes: [], removed: [] }),
-      room: (file) => this.open({ ...store.project, room: file, surface: null, zones: [], camera: null }),
+      room: (file) => this.open({ ...store.project, ...EMPTY_ROOM, room: file }),
       project: (project) => this.open(project, true),
       demo: () => void this.openDemo(),
     });
@@ -157,9 +187,8 @@ export class Page {
       input.value = String(Number(input.value) + by);
       this.photo.setBrush(Number(input.value));
     };
-    onKeys({
+    const light: Record<string, () => void> = {
       ...Object.fromEntries(TOOLS.map(({ tool }, i) => [String(i + 1), () => this.choose(tool)])),
-      "ctrl+z": () => this.store.undo(),
       "Ctrl+z": () => this.store.undo(),
       "Ctrl+Shift+z": () => this.store.redo(),
       "Ctrl+y": () => this.store.redo(),
@@ -169,7 +198,10 @@ export class Page {
       m: tick("show-masks"),
       g: tick("show-grid"),
       v: tick("show-lines"),
-      "?": showKeys,
+    };
+    onKeys((key) => {
+      if (key === "?") return showKeys;
+      return this.isStylising ? { "Ctrl+z": () => this.stylise.undo() }[key] : light[key];
     });
   }
 
@@ -193,10 +225,46 @@ export class Page {
     );
   }
 
+  /** Light and Stylise: one of both parts of the page is shown. */
+  private tabs(): void {
+    const tabs = [byId("tab-light"), byId("tab-stylise")];
+    const parts = [byId("light"), byId("stylise")];
+    const choose = (chosen: number) => {
+      if (chosen === 0 && this.isStylising) this.send(false); // its work goes on
+      tabs.forEach((tab, i) => {
+        tab.setAttribute("aria-selected", String(i === chosen));
+        tab.tabIndex = i === chosen ? 0 : -1;
+        parts[i].hidden = i !== chosen;
+      });
+      document.body.classList.toggle("stylising", chosen === 1);
+      this.stylise.show(chosen === 1);
+    };
+    tabs.forEach((tab, i) => {
+      tab.onclick = () => choose(i);
+      tab.onkeydown = (event) => {
+        if (event.key !== "ArrowLeft" && event.key !== "ArrowRight") return;
+        choose(1 - i);
+        tabs[1 - i].focus();
+      };
+    });
+  }
+
+  private get isStylising(): boolean {
+    return !byId("stylise").hidden;
+  }
+
   private choose(tool: Tool): void {
     byId<HTMLInputElement>(`tool-${tool}`).checked = true;
     this.photo.tool = tool;
     this.photo.redraw();
+    this.hint();
+  }
+
+  /** What a stroke of the tool says, until the user has painted. */
+  private hint(): void {
+    const { tool, label, hint } = TOOLS.find((t) => t.tool === this.photo.tool)!;
+    byId("hint").textContent = tool === "remove" ? `${label}: click ${hint}` : `${label}: paint ${hint}`;
+    byId("hint").hidden = this.store.project.strokes.length > 0 && tool !== "remove";
   }
 
   private open(project: Project, isWhole = false): void {
@@ -227,7 +295,10 @@ export class Page {
 
   private connected(isUp: boolean): void {
     document.body.classList.toggle("down", !isUp);
-    if (isUp) return hideNotice();
+    if (isUp) {
+      this.stylise.connected();
+      return hideNotice();
+    }
     notice(
       "The studio has ended. Your strokes are kept in this browser: " +
         "start it again and open the address that it prints.",
@@ -245,40 +316,52 @@ export class Page {
       saved: () =>
         (byId("saved").textContent =
           `Saved ${new Date().toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" })}`),
-      photo: () => this.photo.setPhoto(rgbPicture(message.width, message.height, payload), message.full),
+      photo: () => this.takePhoto(message, payload),
       room: () => this.takeRoom(message),
       masks: () => this.takeMasks(message, payload),
       doubt: () => this.notes.setDoubt(message),
       view: () => this.takeView(message),
       warnings: () => this.takeWarnings(message),
       texture: () => this.takeTexture(message, payload),
-      lamps: () => this.lamps.setLamps(message),
-      lux: () => showLux(message),
+      lamps: () => {
+        this.lamps.setLamps(message);
+        this.roomTools.setLamps(message.list);
+        document.body.dataset.lampsOf = document.body.dataset.texture;
+      },
+      lux: () => {
+        this.lux.show(message);
+        document.body.dataset.luxOf = document.body.dataset.texture;
+      },
       picture: () => this.takePicture(message, payload),
       progress: () => this.roomStatus(`rendering, ${percent(message.share)}`),
       plan: () => {
         this.trade.setPlan(message);
         this.store.note({ plan: message.plan });
       },
-      working: () =>
-        this.busy(
-          message.stage === "render" || message.stage === "plan"
-            ? ""
-            : `${STAGES[message.stage] ?? message.stage}…`,
-        ),
+      working: () => this.takeWorking(message.stage),
       idle: () => {
         this.busy("");
+        document.body.classList.remove("stale");
         document.body.dataset.idle = String(message.version);
       },
       failed: () => this.fail(message),
+      artwork: () => this.stylise.takeArtwork(message, payload),
+      painting: () => this.stylise.takePainting(message, payload),
+      "not-painted": () => this.stylise.fail(message.message),
     };
     document.body.dataset.last = message.type;
     on[message.type]?.();
   }
 
+  private takeWorking(stage: string): void {
+    if (OF_STYLISE.has(stage)) return this.stylise.takeWorking(stage);
+    this.busy(stage === "render" || stage === "plan" ? "" : `${STAGES[stage] ?? stage}…`);
+  }
+
   private fail(message: Message): void {
     this.busy("");
     document.body.dataset.idle = "failed";
+    document.body.classList.add("stale");
     if (message.missing) {
       notice(`${message.message}: drop it on the page, or choose it.`, {
         label: "Choose it",
@@ -287,14 +370,25 @@ export class Page {
     } else this.notes.fail(String(message.message));
   }
 
+  /** Another photo: nothing of the former one is said any more. */
+  private takePhoto(message: Message, rgb: Uint8Array): void {
+    this.photo.setPhoto(rgbPicture(message.width, message.height, rgb), message.full);
+    this.photo.lamps = [];
+    this.notes.clear();
+    byId("photo-status").textContent = "";
+  }
+
   private takeRoom(message: Message): void {
     this.pattern.setCandidates(message);
+    this.roomTools.setCandidates(message.candidates);
+    this.lux.setSurfaces(message.surfaces);
+    this.lux.setProject(this.store.project.lux_plane);
     this.room.setCamera(message.camera, true);
     if (this.store.project.camera) this.room.setCamera(this.store.project.camera, false);
     void this.room
       .load(`room.glb?session=${this.store.session}&t=${Date.now()}`)
       .catch((problem) => notice(`The quick view of the room cannot be shown: ${problem.message}`));
-    for (const warning of message.warnings) notice(`Room: ${warning.message}: ${warning.advice}`);
+    this.notes.setRoom(message);
   }
 
   private takeMasks(message: Message, bits: Uint8Array): void {
@@ -348,6 +442,7 @@ export class Page {
 
   private takeTexture(message: Message, payload: Uint8Array): void {
     this.lamps.setTexture(message, payload);
+    this.roomTools.setSurface(message.surface);
     this.pattern.setEstimates(message);
     document.body.dataset.texture = message.digest;
     if (this.photo.view && Number.isFinite(message.distance)) this.photo.view.distance = message.distance;
@@ -357,6 +452,7 @@ export class Page {
   private takePicture(message: Message, rgb: Uint8Array): void {
     if (message.which === "after") {
       this.autoExposure = message.exposure;
+      document.body.classList.remove("stale");
       this.trade.setPicture(message);
       const error = message.noise ?? message.bias;
       const stated = error === null ? "" : `, stated error ${percent(error)}`;

@@ -2,7 +2,8 @@
 
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
-import type { Pattern, Project } from "./project";
+import { PLAIN_LAMPS, type Pattern, type Project } from "./project";
+import type { Candidate } from "./room_tools";
 
 const SCALES: [Pattern["scale"], string][] = [
   ["distance", "as in the photo"],
@@ -10,6 +11,8 @@ const SCALES: [Pattern["scale"], string][] = [
   ["spacing", "by the spacing of lamps"],
   ["across", "as many across as in the photo"],
 ];
+/** How far the sliders shift, in metres. */
+const MAX_SHIFT = 1.5;
 const DEGREES = Math.PI / 180;
 
 export class PatternForm {
@@ -23,13 +26,14 @@ export class PatternForm {
   );
   private readonly length = number("length", 0.1, 6, 0.05);
   private readonly turn = slider("turn", -180, 180, 1);
-  private readonly across = slider("across", -1.5, 1.5, 0.01);
-  private readonly along = slider("along", -1.5, 1.5, 0.01);
+  private readonly across = slider("across", -MAX_SHIFT, MAX_SHIFT, 0.001);
+  private readonly along = slider("along", -MAX_SHIFT, MAX_SHIFT, 0.001);
   private readonly whole = make("input", { type: "checkbox", id: "whole" });
   private readonly white = number("white", 1, 100000, 1);
   private readonly proposal = make("p", { class: "quiet row" });
-  private candidates: { name: string; reason: string; kind: string }[] = [];
+  private candidates: Candidate[] = [];
   private project: Project | null = null;
+  private isTurn = false;
   onChange: (what: string, patch: Partial<Project>) => void = () => {};
 
   constructor() {
@@ -47,7 +51,7 @@ export class PatternForm {
       row("White of the photo", this.white, "cd/m²"),
       this.proposal,
     );
-    this.surface.onchange = () => this.onChange("surface", { surface: this.surface.value, zones: [] });
+    this.surface.onchange = () => this.onChange("surface", { surface: this.surface.value, ...PLAIN_LAMPS });
     for (const [input, name] of [
       [this.scale, "scale"],
       [this.length, "length"],
@@ -56,7 +60,10 @@ export class PatternForm {
       [this.along, "shift"],
       [this.whole, "whole"],
     ] as const) {
-      input.addEventListener("input", () => this.onChange(name, { pattern: this.read() }));
+      input.addEventListener("input", () => {
+        this.isTurn = name === "turn"; // the slider has whole degrees, a drag any angle
+        this.onChange(name, { pattern: this.read() });
+      });
     }
     this.white.onchange = () => this.onChange("white", { white: Math.max(1e-3, Number(this.white.value) || 100) });
   }
@@ -65,7 +72,7 @@ export class PatternForm {
     return {
       scale: this.scale.value as Pattern["scale"],
       length: Math.max(0.01, Number(this.length.value) || 1.2),
-      rotation: Number(this.turn.value) * DEGREES,
+      rotation: this.isTurn ? Number(this.turn.value) * DEGREES : this.project!.pattern.rotation,
       offset: [Number(this.across.value), Number(this.along.value)],
       keep_whole: this.whole.checked,
     };
@@ -91,8 +98,12 @@ export class PatternForm {
     this.length.value = String(pattern.length);
     this.length.closest("label")!.hidden = pattern.scale === "distance" || pattern.scale === "across";
     this.turn.value = String(Math.round(pattern.rotation / DEGREES));
-    this.across.value = String(pattern.offset[0]);
-    this.along.value = String(pattern.offset[1]);
+    [this.across, this.along].forEach((input, i) => {
+      const reach = Math.max(MAX_SHIFT, Math.abs(pattern.offset[i])); // a drag may go farther
+      input.min = String(-reach);
+      input.max = String(reach);
+      input.value = String(pattern.offset[i]);
+    });
     this.whole.checked = pattern.keep_whole;
     this.white.value = String(project.white);
     for (const input of [this.turn, this.across, this.along]) {

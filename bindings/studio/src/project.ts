@@ -27,6 +27,14 @@ export interface Pattern {
   keep_whole: boolean;
 }
 
+export interface LuxPlane {
+  surface: string | null; // null: a level plane
+  height: number; // of the level plane above the floor, in metres
+}
+
+/** A copy of a lamp of this kind, at u and v in metres on the surface. */
+export type Added = [number, number, number];
+
 export interface Project {
   luxfer_studio: number;
   photo: FileName;
@@ -36,12 +44,18 @@ export interface Project {
   zones: [number, number, number, number][];
   surface: string | null;
   pattern: Pattern;
+  mix: Record<string, number>; // the factor of each kind of lamp
+  added: Added[];
+  lux_plane: LuxPlane;
   white: number;
   camera: Camera | null;
   exposure: number | null;
   noise: number;
   plan: { render: Record<string, number> } | null;
 }
+
+/** The lamps of a surface before anybody has changed them. */
+export const PLAIN_LAMPS: Pick<Project, "zones" | "mix" | "added"> = { zones: [], mix: {}, added: [] };
 
 /** Changes of one thing within this time, such as of a slider, are undone together. */
 const TOGETHER_MS = 800;
@@ -152,7 +166,7 @@ function forgetOldest(except: string): void {
 
 /** Whether a project has anything that would be a loss. */
 export function hasWork(project: Project): boolean {
-  return project.strokes.length + project.removed.length + project.zones.length > 0;
+  return project.strokes.length + project.removed.length + project.zones.length + (project.added ?? []).length > 0;
 }
 
 export function newSession(): string {

@@ -20,20 +20,24 @@ import { PICTURE, type Message } from "./api";
 import { byId } from "./dom";
 import { rgbPicture } from "./masks";
 import type { Camera } from "./project";
+import { dot, type Rectangle, type Vector } from "./surface";
 
 const ASPECT = PICTURE[0] / PICTURE[1];
 const KEY_ANGLE = 0.06;
 const KEY_DOLLY = 1.1;
 /** The camera has come to rest when nothing has moved it for this time. */
 const REST_MS = 250;
+/** Marks end at this distance from the camera, and the pointer reaches this far, in metres. */
+const NEAR = 0.05;
+const MAX_REACH = 1000;
 
 export interface Spot {
-  position: [number, number, number];
+  position: Vector;
   label: string;
 }
 
 export class RoomView {
-  private readonly frame = byId("room");
+  readonly frame = byId("room");
   private readonly after = byId<HTMLCanvasElement>("room-after");
   private readonly before = byId<HTMLCanvasElement>("room-before");
   private readonly marks = byId<HTMLCanvasElement>("room-marks");
@@ -48,6 +52,10 @@ export class RoomView {
   private hasBefore = false;
   private spots: Spot[] = [];
   onCamera: (camera: Camera | null) => void = () => {};
+  /** Handles a key before the view does; true if it has. */
+  onKey: (event: KeyboardEvent) => boolean = () => false;
+  /** Draws over the picture, in pixels of the screen. */
+  drawOver: (context: CanvasRenderingContext2D) => void = () => {};
 
   constructor() {
     this.startWebGl();
@@ -108,6 +116,7 @@ export class RoomView {
       this.quietly(() => this.controls!.update());
     } else this.camera.lookAt(target);
     this.paint();
+    this.drawMarks();
   }
 
   private isQuiet = false;
@@ -148,27 +157,31 @@ export class RoomView {
     this.after.classList.toggle("away", this.isMoving && !!this.renderer);
     this.frame.style.setProperty("--split", `${share}%`);
     this.frame.classList.toggle("splitting", isShown);
-    this.drawSpots();
+    this.drawMarks();
   }
 
   /** Rings around lamps, such as the one that a list shows. */
   highlight(spots: Spot[]): void {
     this.spots = spots;
-    this.drawSpots();
+    this.drawMarks();
   }
 
-  private drawSpots(): void {
+  /** Whether drags turn the view. */
+  setTurning(isOn: boolean): void {
+    if (this.controls) this.controls.enabled = isOn;
+    this.frame.classList.toggle("pointing", !isOn);
+  }
+
+  drawMarks(): void {
     const canvas = this.marks;
-    canvas.hidden = this.spots.length === 0;
-    if (canvas.hidden) return;
     canvas.width = this.frame.clientWidth;
     canvas.height = this.frame.clientHeight;
     const context = canvas.getContext("2d")!;
     this.camera.updateMatrixWorld();
+    this.drawOver(context);
     for (const spot of this.spots) {
-      const at = new Vector3(...spot.position).project(this.camera);
-      if (at.z > 1) continue;
-      const [x, y] = [((at.x + 1) / 2) * canvas.width, ((1 - at.y) / 2) * canvas.height];
+      const at = this.onScreen(spot.position);
+      if (!at) continue;
       for (const [colour, wide] of [
         ["#000", 5],
         ["#fff", 2.5],
@@ -176,10 +189,50 @@ export class RoomView {
         context.strokeStyle = colour;
         context.lineWidth = wide;
         context.beginPath();
-        context.arc(x, y, 14, 0, 2 * Math.PI);
+        context.arc(...at, 14, 0, 2 * Math.PI);
         context.stroke();
       }
     }
+  }
+
+  /** Where a point of the room is on the picture; null behind the camera. */
+  onScreen(point: Vector): [number, number] | null {
+    const seen = new Vector3(...point).applyMatrix4(this.camera.matrixWorldInverse);
+    return seen.z > -NEAR ? null : this.toPixels(seen);
+  }
+
+  private toPixels(seen: Vector3): [number, number] {
+    const at = seen.clone().applyMatrix4(this.camera.projectionMatrix);
+    return [((at.x + 1) / 2) * this.frame.clientWidth, ((1 - at.y) / 2) * this.frame.clientHeight];
+  }
+
+  /** The outline of a polygon on the picture, cut where it is behind the camera. */
+  outline(corners: Vector[]): Path2D {
+    const seen = corners.map((c) => new Vector3(...c).applyMatrix4(this.camera.matrixWorldInverse));
+    const cut: Vector3[] = [];
+    seen.forEach((to, i) => {
+      const from = seen[(i + seen.length - 1) % seen.length];
+      if (from.z > -NEAR !== to.z > -NEAR) cut.push(from.clone().lerp(to, (-NEAR - from.z) / (to.z - from.z)));
+      if (to.z <= -NEAR) cut.push(to);
+    });
+    const path = new Path2D();
+    cut.forEach((point, i) => (i ? path.lineTo(...this.toPixels(point)) : path.moveTo(...this.toPixels(point))));
+    if (cut.length) path.closePath();
+    return path;
+  }
+
+  /** u and v where a pointer meets the plane of a surface; null if it does not. */
+  onPlane(surface: Rectangle, event: { clientX: number; clientY: number }): [number, number] | null {
+    const box = this.frame.getBoundingClientRect();
+    const x = (2 * (event.clientX - box.left)) / box.width - 1;
+    const y = 1 - (2 * (event.clientY - box.top)) / box.height;
+    const eye = this.camera.position;
+    const ahead = new Vector3(x, y, 0.5).unproject(this.camera).sub(eye).normalize();
+    const towards = dot(ahead.toArray(), surface.normal);
+    const far = dot(surface.origin.map((o, i) => o - eye.toArray()[i]), surface.normal) / towards;
+    if (!(far > 0 && far < MAX_REACH)) return null;
+    const at = ahead.multiplyScalar(far).add(eye).toArray().map((p, i) => p - surface.origin[i]);
+    return [dot(at, surface.u_axis), dot(at, surface.v_axis)];
   }
 
   private moved(): void {
@@ -203,6 +256,7 @@ export class RoomView {
 
   private key(event: KeyboardEvent): void {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (this.onKey(event)) return event.preventDefault();
     const ahead = this.camera.getWorldDirection(new Vector3());
     const reach = this.controls ? this.controls.target.distanceTo(this.camera.position) : 2.5;
     const turns: Record<string, [number, number]> = {
@@ -238,7 +292,7 @@ export class RoomView {
     this.renderer?.setPixelRatio(window.devicePixelRatio || 1);
     this.renderer?.setSize(width, width / ASPECT);
     this.paint();
-    this.drawSpots();
+    this.drawMarks();
   }
 
   private paint(): void {

@@ -14,13 +14,13 @@ export interface ToolLook {
 
 /** Colours by Okabe and Ito, which people with any colour vision tell apart. */
 export const TOOLS: ToolLook[] = [
-  { tool: "plane", label: "Plane", hint: "on the plane that carries the lights", colour: "#56b4e9", dashes: [] },
-  { tool: "not-plane", label: "Not plane", hint: "off that plane", colour: "#d55e00", dashes: [7, 5] },
-  { tool: "light", label: "Light", hint: "on lights", colour: "#f0e442", dashes: [] },
+  { tool: "plane", label: "Plane", hint: "on the ceiling, or whatever carries the lamps", colour: "#56b4e9", dashes: [] },
+  { tool: "not-plane", label: "Not plane", hint: "on walls, floor and furniture", colour: "#d55e00", dashes: [7, 5] },
+  { tool: "light", label: "Light", hint: "on lamps that shine", colour: "#f0e442", dashes: [] },
   {
     tool: "not-light",
     label: "Not light",
-    hint: "on the plane beside the lights",
+    hint: "on the ceiling beside the lamps",
     colour: "#cc79a7",
     dashes: [2, 5],
   },

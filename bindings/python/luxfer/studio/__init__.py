@@ -16,9 +16,13 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 | jobs | threads that do the newest work and cancel outdated work |
 | live | masks while strokes are painted, at a small size |
 | light | the steps from the photo to the lit room; a step runs only if its input has changed |
+| mix | the factor of each kind of lamp |
+| measure | the plane on which the page shows the illuminance, and its numbers |
 | room | its corners, its work plane, the brightness of its pictures |
+| painting | the stylisation: the artwork on the ball, the painted picture, the sheet |
 | pictures | images as bytes for the page |
 | project | the entries of a project and their checks |
+| results | writes the files of results |
 | program | converts a project to a Python program |
 """
 

@@ -39,6 +39,20 @@ MAX_SESSIONS = 8
 MAX_PROJECT = 16 << 20
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
 ROOMS = {".glb", ".gltf"}
+#: What to do about a file of another kind, by the ending of its name.
+CONVERSIONS = {
+    ending: what
+    for endings, what in (
+        (".heic .heif .avif", ": save it as JPEG (on an iPhone: Camera > Formats > Most Compatible)"),
+        (".dng .cr2 .cr3 .nef .arw .raf", ": develop it to JPEG or TIFF in a photo program"),
+        (
+            ".blend .fbx .obj .skp .3ds .max .dae .stl .ifc .rvt",
+            ": export it as .glb from the program that made it",
+        ),
+        (".usd .usda .usdc .usdz", ": import it into Blender and export it as .glb"),
+    )
+    for ending in endings.split()
+}
 
 
 class Studio:
@@ -98,11 +112,12 @@ class Studio:
             return problem(f"the file is larger than {MAX_UPLOAD >> 20} MiB", 413)
         name = request.query_params.get("name", "file")
         if not data:
-            return problem(f"{name} is empty")
+            return problem(f"{name} is empty: copy it anew from where it comes from, and open it again")
         suffix = Path(name).suffix.lower()
         if suffix not in PHOTOS | ROOMS:
             return problem(
                 f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (glTF: .glb, .gltf)"
+                f"{CONVERSIONS.get(suffix, '')}"
             )
         try:
             await run_in_threadpool(self.try_file, data, suffix)
@@ -120,7 +135,8 @@ class Studio:
         if suffix in ROOMS:
             scene = luxfer.Scene.from_bytes(self.context, data, folder)
             if not scene.candidates:
-                raise luxfer.errors.Degenerate("it has no surface that could receive lights")
+                what = "it has no surface that could receive lights: model its ceiling as a flat object"
+                raise luxfer.errors.Degenerate(what)
         else:
             luxfer.Image.from_bytes(self.context, data)
 
@@ -156,6 +172,23 @@ class Studio:
         except RecursionError:
             return problem("the project is nested too deeply")
 
+    async def put_artwork(self, request: Request) -> Response:
+        """POST artwork?session=&sheet=: receives an artwork of the ball, or with sheet=1 a photo of the painted sheet;
+        sends it as it lies on the ball."""
+        session = self.sessions.get(request.query_params.get("session", ""))
+        if session is None:
+            return problem("there is no such session", 404)
+        data = await body(request, MAX_UPLOAD)
+        if data is None:
+            return problem(f"the artwork is larger than {MAX_UPLOAD >> 20} MiB", 413)
+        try:
+            is_sheet = request.query_params.get("sheet") == "1"
+            await run_in_threadpool(session.painter.take_artwork, data, is_sheet)
+        except (luxfer.Error, projects.Invalid) as error:
+            return problem(f"the artwork cannot be used: {projects.message(error)}")
+        assert session.painter.own is not None
+        return Response(session.painter.shown(session.painter.own), media_type="application/octet-stream")
+
     async def get_room(self, request: Request) -> Response:
         """GET room.glb?session=: sends the room before it is lit, for the page's own 3D view."""
         session = self.sessions.get(request.query_params.get("session", ""))
@@ -188,8 +221,8 @@ class Studio:
         if not (8 <= len(name) <= 64 and name.isascii() and name.isalnum()):
             await socket.close(1008)
             return
+        session = await run_in_threadpool(self.session, name)  # before the page can ask for anything of it
         await socket.accept()
-        session = await run_in_threadpool(self.session, name)
         loop, outbox = asyncio.get_running_loop(), Outbox()
 
         def listen(header: dict[str, Any], payload: bytes) -> None:
@@ -216,6 +249,7 @@ class Studio:
             session.listeners.remove(listen)
             if not session.listeners:
                 session.work.stop()  # nobody looks at it
+                session.painter.work.stop()
             speaker.cancel()
 
     def app(self) -> Starlette:
@@ -225,6 +259,7 @@ class Studio:
                 Route("/files", self.put_file, methods=["POST"]),
                 Route("/files", self.get_files, methods=["GET"]),
                 Route("/projects", self.put_project, methods=["POST"]),
+                Route("/artwork", self.put_artwork, methods=["POST"]),
                 Route("/room.glb", self.get_room),
                 Route("/out/{kind}", self.get_out),
                 WebSocketRoute("/ws", self.talk),
@@ -299,8 +334,20 @@ def serve(asked: argparse.Namespace) -> int:
             f"the page of the studio has not been built ({STATIC} is empty): run `make studio` first", file=sys.stderr
         )
         return Exit.FAILED
+    for folder in asked.folder:
+        if not folder.is_dir():
+            print(f"luxfer studio: --folder: there is no folder {folder}", file=sys.stderr)
+            return Exit.UNREADABLE
+    state = asked.state or state_folder()
     try:
-        files = Files(asked.state or state_folder(), Allowed(asked.folder))
+        files = Files(state, Allowed(asked.folder))
+    except OSError as error:
+        print(
+            f"luxfer studio: --state: {state} cannot keep files: {error.strerror or error}; name another folder",
+            file=sys.stderr,
+        )
+        return Exit.FAILED
+    try:
         first, kept = first_project(asked, files)
     except (OSError, projects.Invalid) as error:
         print(f"luxfer studio: {error}", file=sys.stderr)

@@ -15,24 +15,21 @@ from typing import Any
 import luxfer
 import numpy as np
 
-from ..cli.plane import DESK
-from . import pictures
+from ..cli.plane import Plane
+from . import measure, mix, pictures
 from .jobs import Latest
 from .live import strokes_of
 from .project import Project
-from .room import bounds, exposure_for, pattern_of, work_plane
+from .room import bounds, exposure_for, rectangle, texture_settings, work_plane
 
 #: Settings of every relighting. They do not depend on time, so that a project always gives the same light.
 RELIGHT = {"target_error": 0.02, "paths": 1 << 18}
-MAX_TEXELS = 1024
 #: Number of pixels of the first picture, and its time in milliseconds.
 FIRST_PIXELS, FIRST_MS = 36_000, 350
 #: Minimum time between two reports of progress, in seconds.
 REFRESH_SECONDS = 0.5
 #: More paths per pixel than any picture gets: the time ends the rendering.
 MAX_SAMPLES = 1 << 16
-#: Points of the calculation grid on its longer side, and paths for each.
-LUX_POINTS, LUX_SAMPLES = 24, 64
 #: The step whose result each step needs.
 AFTER = {
     "view": "",
@@ -40,10 +37,12 @@ AFTER = {
     "unwarp": "masks",
     "emission": "unwarp",
     "relight": "emission",
-    "first": "relight",
-    "lux": "relight",
-    "before": "relight",
-    "second": "relight",
+    "expose": "relight",
+    "mix": "relight",
+    "lux": "mix",
+    "first": "mix",
+    "before": "mix",
+    "second": "mix",
     "plan": "first",
     "picture": "first",
 }
@@ -63,6 +62,7 @@ class Light:
         self.shown: dict[str, tuple[luxfer.Render, bool, float]] = {}
         self.last_reported = 0.0
         self.exposure = 1.0
+        self.desks: dict[str, Any] = {}
         self.planned: dict[str, Any] = {}
         self.is_replaced = False  # whether the mask of the lights is not the library's own
         self.lights: luxfer.Image | None = None
@@ -73,15 +73,18 @@ class Light:
     def follow(self, project: Project, size: tuple[int, int], compare: str) -> None:
         """Runs all outdated steps and sends each result to the page."""
         surface = project["surface"] or self.surface
-        pattern = [surface, project["pattern"], project["zones"]]
+        # The library solves for the strength of the texture as it was placed, so both stages need the same white.
+        pattern = [surface, project["pattern"], project["zones"], project["white"]]
         shot = [project["camera"], size]
         self.step("view", [], self.find_view)
         self.step("masks", project["strokes"], lambda: self.make_masks(project))
         self.step("unwarp", project["removed"], lambda: self.unwarp(project))
         self.step("emission", pattern, lambda: self.make_texture(project, surface))
-        self.step("relight", project["white"], lambda: self.relight(project))
-        self.done["relight"] = project
-        self.step("lux", [], lambda: self.measure(surface))
+        self.step("relight", [], lambda: self.relight(project))
+        self.step("expose", [], lambda: self.choose_exposure(surface))
+        self.step("mix", [project["mix"], project["added"]], lambda: self.mix(project, surface))
+        self.done["mix"] = project
+        self.step("lux", project["lux_plane"], lambda: self.measure(project, surface))
         self.step("first", shot, lambda: self.first_picture(project, size))
         if compare != "off":
             self.step("before", [compare, *shot], lambda: self.first_before(project, size, compare))
@@ -197,13 +200,12 @@ class Light:
     def make_texture(self, project: Project, surface: str) -> None:
         self.transfer.set_scene(self.room, surface)
         self.transfer.set_zones(np.array(project["zones"], np.float64).reshape(-1, 4))
-        self.stage("emission", "emission", max_texels=MAX_TEXELS, pattern=pattern_of(project))
+        self.stage("emission", "emission", **texture_settings(project))
         self.send_warnings()
         image = self.transfer.image("emission")
         width, height, _ = image.size
         small = pictures.reduced(image, 300_000)
         values = small.numpy()
-        placed = self.room.find_surface(surface)
         report = self.transfer.report
         self.send(
             "texture",
@@ -212,10 +214,7 @@ class Light:
             height=small.size[1],
             texels=[width, height],
             digest=pictures.digest(image),
-            surface={
-                "name": surface,
-                **{k: getattr(placed, k) for k in ("origin", "u_axis", "v_axis", "normal", "size")},
-            },
+            surface={"name": surface, **(rectangle(self.room, surface) or {})},
             distance=report.plane_distance,
             distance_error=report.plane_distance_error,
             proposed_white=[report.proposed_white, report.proposed_white_low, report.proposed_white_high],
@@ -224,14 +223,19 @@ class Light:
     def relight(self, project: Project) -> None:
         self.stage("relight", "relight", white_luminance=project["white"], relight=RELIGHT)
         self.send_warnings()
-        self.lit = self.transfer.scene("lit")
+
+    def mix(self, project: Project, surface: str) -> None:
+        """Gives each kind of lamp its share of the light, and sends the lamps and how their texture lies."""
+        placed = self.room.find_surface(surface)
+        self.lit = mix.apply(self.transfer, placed, project["mix"], project["added"])
+        names = ("kind", "position", "axis", "normal", "size", "flux", "radiance", "cct", "duv")
+        shown = mix.lamps(self.transfer.fixtures, placed, project["mix"], project["added"])
+        lamps = [{k: getattr(lamp, k) for k in names} | {"added": number} for lamp, number in shown]
         self.send(
             "lamps",
             error=self.transfer.solution.error,
-            list=[
-                {k: getattr(f, k) for k in ("kind", "position", "axis", "size", "radiance", "flux", "cct", "duv")}
-                for f in self.transfer.fixtures
-            ],
+            list=lamps,
+            to_texture=mix.texture_map(self.lit, placed).tolist(),
         )
 
     def camera(self, project: Project) -> dict[str, Any]:
@@ -259,7 +263,11 @@ class Light:
         self.send_picture(render, project, "after", False, time.perf_counter() - start)
 
     def first_before(self, project: Project, size: tuple[int, int], compare: str) -> None:
-        self.quick(self.room if compare == "own" else self.transfer.scene("white"), project, size, "before")
+        scene = self.room
+        if compare == "white":
+            placed = self.room.find_surface(project["surface"] or self.surface)
+            scene = mix.apply(self.transfer, placed, project["mix"], project["added"], "white")
+        self.quick(scene, project, size, "before")
 
     def quick(self, scene: luxfer.Scene, project: Project, size: tuple[int, int], which: str) -> luxfer.Render:
         """Renders and sends a small picture within a fixed time."""
@@ -276,38 +284,28 @@ class Light:
         self.send_picture(render, project, which, False)
         return render
 
-    def measure(self, surface: str) -> None:
-        """Computes and sends the illuminance of the work plane, and chooses the exposure of the pictures."""
-        plane, problem = work_plane(self.room, surface)
-        metres = plane.sides
-        cell = max(metres) / LUX_POINTS
-        columns, rows = (max(1, round(m / cell)) for m in metres)
-        job = luxfer.Illuminance(self.context, self.lit).start_grid(
-            plane.grid(), columns=columns, rows=rows, samples=LUX_SAMPLES
+    def lux_on(self, plane: Plane, scene: luxfer.Scene) -> dict[str, Any]:
+        """Computes the illuminance of a plane."""
+        columns, rows = measure.points(plane)
+        job = luxfer.Illuminance(self.context, scene).start_grid(
+            plane.grid(), columns=columns, rows=rows, samples=measure.LUX_SAMPLES
         )
-        lux = self.thread.finish(job)
-        report = lux.report
-        values = lux.image("lux").numpy()[..., 0]
-        open_points = values[values > 0]  # no light at all reaches points inside of furniture
-        scale = values.size / max(1, open_points.size)
-        self.exposure = exposure_for(report.mean * scale)
-        if problem:
+        return measure.numbers(self.thread.finish(job))
+
+    def choose_exposure(self, surface: str) -> None:
+        """Chooses the exposure of the pictures by the work plane before lamps are dimmed, so dimmed light is darker."""
+        self.desks = self.lux_on(work_plane(self.room, surface)[0], self.transfer.scene("lit"))
+        self.exposure = exposure_for(self.desks["mean"])
+
+    def measure(self, project: Project, surface: str) -> None:
+        """Computes and sends the illuminance of the plane that the project chooses."""
+        plane, problem = measure.chosen_plane(self.room, surface, project)
+        if plane is None:
             self.send("lux", problem=problem)
             return
-        sides = self.room.find_surface(surface).size
-        self.send(
-            "lux",
-            values=[[round(float(v), 1) for v in row] for row in values],
-            size=metres,
-            height=DESK,
-            floor=plane.origin[1] - DESK,
-            insets=[(whole - side) / 2 for whole, side in zip(sides, metres)],
-            inside=values.size - open_points.size,
-            minimum=float(open_points.min()) if open_points.size else 0.0,
-            mean=report.mean * scale,
-            maximum=report.maximum,
-            error=1.96 * report.mean_error * scale,
-        )
+        is_known = measure.is_default(project) and mix.is_plain(project["mix"], project["added"])
+        found = self.desks if is_known else self.lux_on(plane, self.lit)
+        self.send("lux", **found, **measure.place(self.room, surface, plane, project))
 
     def refine(self, project: Project, size: tuple[int, int]) -> None:
         """Renders the picture at full size and sends each intermediate state, until it has the paths of the plan."""

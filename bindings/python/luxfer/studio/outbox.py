@@ -16,7 +16,7 @@ from typing import Any
 #: again. The largest message is a photo of session.SHOWN_PIXELS. [convention]
 MAX_WAITING = 64 << 20
 #: Kinds of messages of which the page needs only the newest; messages that differ in these fields are separate kinds.
-REPLACED = {"picture": ("which",), "masks": ("live",), "progress": (), "step": ("name",)}
+REPLACED = {"picture": ("which",), "masks": ("live",), "progress": (), "step": ("name",), "painting": ()}
 
 
 class Outbox:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from .light import MAX_TEXELS, REACH, RELIGHT
+from . import mix
+from .light import REACH, RELIGHT
 from .live import PHASES
 from .project import Project
-from .room import pattern_of
+from .room import texture_settings
 
 HEAD = '''"""Lights a room as in a photo: written by luxfer studio. It needs the package luxfer."""
 
@@ -41,21 +42,33 @@ mask = transfer.image("lights-mask").numpy()[..., 0]
 transfer.use_mask("lights", without(mask, {removed}, {reach} * mask.shape[1]))
 """
 
+#: The lit room and its schedule, as they are and with lamps that are dimmed or added.
+PLAIN = 'transfer.scene("lit")', 'transfer.save_fixtures("luminaires.csv")'
+MIXED = "mix.apply(transfer, *lamps)", 'mix.write_schedule(Path("luminaires.csv"), transfer, *lamps)'
+MIX_HEAD = """
+# The factor of each kind of lamp, and added lamps: kind, u and v in metres.
+from pathlib import Path
+
+from luxfer.studio import mix
+
+lamps = (room.find_surface(surface), {mix}, {added})
+"""
+
 TAIL = """
 # The pattern on the surface, and places without lamps: u0, v0, u1, v1 in metres.
 transfer.set_zones({zones})
-transfer.run("unwarp", "emission", max_texels={texels}, pattern={pattern})
+transfer.run("unwarp", "emission", **{texture})
 transfer.run("relight", "relight", white_luminance={white}, relight={relight})
-lit = transfer.scene("lit")
+lit = {lit}
 
 render = luxfer.Render(context, lit)
 render.set_camera(**{camera})
 render.run(width={width}, height={height}, preview=1.0, **{render})
 
-for lamp in transfer.fixtures:
+for lamp in {fixtures}:
     print(f"kind {{lamp.kind}}: {{lamp.flux:.0f}} lm, {{lamp.cct:.0f}} K at", [round(x, 2) for x in lamp.position])
 lit.export("lit.glb")
-transfer.save_fixtures("luminaires.csv")
+{schedule}
 render.write_exr("render.exr")
 render.image("preview").save("render.png", {exposure})
 """
@@ -77,12 +90,19 @@ def program(project: Project, size: tuple[int, int], surface: str, camera: dict[
     )
     if project["removed"]:
         out += REMOVED.format(removed=project["removed"], reach=REACH)
+    is_plain = mix.is_plain(project["mix"], project["added"])
+    if not is_plain:
+        out += MIX_HEAD.format(mix=project["mix"], added=project["added"])
+    lit, schedule = PLAIN if is_plain else MIXED
+    fixtures = "transfer.fixtures" if is_plain else "(lamp for lamp, _ in mix.lamps(transfer.fixtures, *lamps))"
     return out + TAIL.format(
         zones=project["zones"],
-        texels=MAX_TEXELS,
-        pattern=pattern_of(project),
+        texture=texture_settings(project),
         white=project["white"],
         relight=RELIGHT,
+        lit=lit,
+        schedule=schedule,
+        fixtures=fixtures,
         camera=camera,
         width=size[0],
         height=size[1],

@@ -27,6 +27,9 @@ DEFAULTS: Project = {
     "zones": [],  # [u0, v0, u1, v1] in metres on the surface, on each lamp that was taken out of the room
     "surface": None,  # name of the surface that receives the lights; None: the likeliest ceiling
     "pattern": {"scale": "distance", "length": 1.2, "rotation": 0.0, "offset": [0.0, 0.0], "keep_whole": False},
+    "mix": {},  # for each kind of lamp, the factor of its light; 1 for kinds that are not named
+    "added": [],  # [kind, u, v] in metres on the surface: a copy of a lamp of this kind
+    "lux_plane": {"surface": None, "height": 0.75},  # where the page shows lux: a surface, or a height above the floor
     "white": 100.0,  # luminance of the photo's white, cd/m²
     "camera": None,  # {"position", "target", "fov_y"}; None: the first camera of the room
     "exposure": None,  # what 1 cd/m² becomes in the picture; None: chosen by its brightness
@@ -124,6 +127,17 @@ def settings(**fields: Callable[[Any, str], Any]) -> Callable[[Any, str], dict[s
     return check
 
 
+def factors(low: float, high: float) -> Callable[[Any, str], dict[str, float]]:
+    """A check for a factor for each kind of lamp."""
+
+    def check(value: Any, name: str) -> dict[str, float]:
+        if not isinstance(value, dict) or len(value) > 1000 or not all(str(key).isdecimal() for key in value):
+            raise Invalid(f"{name} is an object with a factor for the number of each kind of lamp")
+        return {key: number(low, high)(inner, f"{name}.{key}") for key, inner in value.items()}
+
+    return check
+
+
 PIXEL, METRE = number(-1e5, 1e5), number(-1e6, 1e6)
 FILE = record(name=text, sha256=text)
 FIELDS = {
@@ -140,6 +154,9 @@ FIELDS = {
         offset=many(METRE, 2),
         keep_whole=truth,
     ),
+    "mix": factors(0, 4),
+    "added": many(many(METRE, 3), max_count=1000),
+    "lux_plane": record(surface=optional(text), height=number(0, 100)),
     "white": number(1e-3, 1e6),
     "camera": optional(record(position=many(METRE, 3), target=many(METRE, 3), fov_y=number(0.01, 3))),
     "exposure": optional(number(1e-9, 1e9)),
@@ -153,7 +170,7 @@ FIELDS = {
 def checked(value: Any) -> Project:
     """Checks a project, and adds missing entries; raises Invalid if an entry is wrong."""
     if not isinstance(value, dict) or value.get("luxfer_studio") != FORMAT:
-        raise Invalid("this is not a project of luxfer studio")
+        raise Invalid("this is not a project of luxfer studio: open a file that Keep the result > Project has saved")
     if unknown := set(value) - set(DEFAULTS):
         raise Invalid(f"the project has an unknown entry: {min(unknown)}")
     merged = {**DEFAULTS, **value}

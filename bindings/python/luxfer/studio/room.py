@@ -16,6 +16,8 @@ from .project import Project
 #: above middle grey]. REFLECTANCE: the assumed reflectance of this surface [convention: between those of floors (0.2)
 #: and ceilings (0.7) in EN 12464-1].
 KEY, REFLECTANCE = 0.25, 0.45
+#: Maximum side of the emissive texture in texels.
+MAX_TEXELS = 1024
 
 
 def exposure_for(lux: float) -> float:
@@ -33,6 +35,20 @@ def pattern_of(project: Project) -> dict[str, Any]:
         "offset": pattern["offset"],
         "margin": 0.0 if pattern["keep_whole"] else -1.0,
     }
+
+
+def texture_settings(project: Project) -> dict[str, Any]:
+    """Returns the settings of a transfer's texture."""
+    return {"max_texels": MAX_TEXELS, "pattern": pattern_of(project), "white_luminance": project["white"]}
+
+
+def rectangle(room: luxfer.Scene, name: str) -> dict[str, Any] | None:
+    """Returns the bounding rectangle of a planar surface, as the page draws it; None if no such plane is found."""
+    try:
+        found = room.find_surface(name)
+    except luxfer.Error:
+        return None
+    return {k: getattr(found, k) for k in ("origin", "u_axis", "v_axis", "normal", "size")}
 
 
 def bounds(room: luxfer.Scene) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]]:

@@ -1,7 +1,7 @@
 """One user: the current project, its results, and the connections to the page.
 
 The page sends its whole project at every change, so that nothing is lost if the page or the server ends. Two threads
-work on it: one computes the masks while strokes are painted, the other lights the room.
+work on it: one computes the masks while strokes are painted, the other lights the room. A third one stylises.
 """
 
 from __future__ import annotations
@@ -15,24 +15,19 @@ from typing import Any
 
 import luxfer
 
-from . import pictures, program
+from . import measure, painting, pictures, results
 from . import project as projects
 from .files import Files
 from .jobs import Latest
 from .light import Light
 from .live import LiveMasks
 from .project import Project
-from .room import bounds
+from .room import bounds, rectangle
 
 #: Maximum number of pixels of the photo that the page shows.
 SHOWN_PIXELS = 2_000_000
 #: Maximum side of a picture in pixels.
 MAX_SIDE = 1600
-
-#: The endings of the files of results.
-ENDINGS = {"glb": "glb", "exr": "exr", "png": "png", "csv": "csv", "project": "luxfer.json", "program": "py"}
-#: The step of Light after which each file can be written: pictures need full size, the program needs exposure and plan.
-NEEDS = {"glb": "relight", "csv": "relight", "exr": "second", "png": "second", "program": "plan"}
 
 Send = Callable[[dict[str, Any], bytes], None]
 
@@ -65,11 +60,13 @@ class Session:
         self.light: Light | None = None
         self.live: Latest[Wanted] = Latest("studio-live", self._paint, self._failed)
         self.work: Latest[Wanted] = Latest("studio-work", self._work, self._failed)
+        self.painter = painting.Painter(context, self.send, self._not_painted)
 
     def close(self) -> None:
         """Ends the threads and releases the library's objects."""
         self.live.close()
         self.work.close()
+        self.painter.close()
         self.light = self.small = self._photo = self._room = None
 
     # -- the page
@@ -85,6 +82,9 @@ class Session:
             raise projects.Invalid("a message is an object")
         if message.get("type") == "expose":
             self.expose(message.get("exposure"))
+        elif message.get("type") == "paint":
+            self.painter.ask(message)
+            self.work.stop()  # the processors are for the tab that is shown, which sends its state when it returns
         else:
             self.edit(message)
 
@@ -177,14 +177,16 @@ class Session:
         low, high = ([float(x) for x in corner] for corner in bounds(room))
         candidates = [
             {"name": c.name, "kind": c.kind.name.lower(), "score": c.score, "reason": c.reason, "height": c.height}
+            | {"place": rectangle(room, c.name)}
             for c in room.candidates[:12]
         ]
         self.send(
             "room",
             candidates=candidates,
+            surfaces=measure.surfaces(room),
             camera=light.camera({**project, "camera": None}),
             bounds=[low, high],
-            warnings=[{"message": w.message, "advice": w.advice} for w in room.warnings],
+            warnings=[{"code": w.code.name, "message": w.message, "advice": w.advice} for w in room.warnings],
         )
         return light
 
@@ -219,6 +221,10 @@ class Session:
         self._save(wanted)  # with the settings that the plan has chosen
         self.send("idle", version=wanted.version)
 
+    def _not_painted(self, failure: Exception) -> None:
+        """Sends an error of the stylisation to the page."""
+        self.send("not-painted", message=projects.message(failure))
+
     def _failed(self, failure: Exception) -> None:
         """Sends the error to the page, which asks for a missing file."""
         header = projects.failure(failure)
@@ -226,44 +232,18 @@ class Session:
 
     # -- results
 
-    @staticmethod
-    def text(kind: str, wanted: Wanted, light: Light) -> str:
-        """Returns the project file, or the Python program."""
-        if kind == "project":
-            return projects.dumps(wanted.project)
-        surface = wanted.project["surface"] or light.surface
-        return program.program(wanted.project, wanted.size, surface, light.camera(wanted.project), light.exposure)
-
     def out(self, kind: str, folder: Path) -> Path:
         """Writes a file of results into a folder and returns its path; raises NotReady if the results are missing or
         belong to an older state of the project."""
+        if kind in painting.RESULTS:
+            return self.painter.out(kind, folder)
         wanted, light = self.wanted, self.light
         if wanted is None or light is None:
             raise luxfer.errors.NotReady("there is no result yet")
-        check_ready(kind, wanted, light)
+        results.check_ready(kind, wanted, light)
         name = Path(wanted.project["photo"]["name"]).stem or "studio"
-        path = folder / f"{name}.{ENDINGS[kind]}"
-        if kind in ("project", "program"):
-            path.write_text(self.text(kind, wanted, light), encoding="utf-8")
-        elif kind == "csv":
-            light.transfer.save_fixtures(path)
-        elif kind == "glb":
-            light.transfer.scene("lit").export(path)
-        else:
-            assert light.render is not None
-            if kind == "exr":
-                light.render.write_exr(path)
-            else:
-                light.render.image("preview").save(path, wanted.project["exposure"] or light.exposure)
+        path = folder / f"{name}.{results.ENDINGS[kind]}"
+        results.write(kind, path, wanted, light)
         if self.wanted is not wanted:  # the page has changed it while the file was written
             raise luxfer.errors.NotReady("the project has been changed: try again in a moment")
         return path
-
-
-def check_ready(kind: str, wanted: Wanted, light: Light) -> None:
-    """Raises NotReady if the results for a file are missing or belong to an older state of the project. A project file
-    needs no results."""
-    if kind not in ENDINGS:
-        raise LookupError(f"there is no result {kind}")
-    if kind in NEEDS and light.done.get(NEEDS[kind]) is not wanted.project:
-        raise luxfer.errors.NotReady("the room follows the latest change: try again in a moment")

@@ -1,0 +1,133 @@
+"""Results as files: the room, pictures, schedules of the lamps, their photometry, the project and its program."""
+
+from __future__ import annotations
+
+import math
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import luxfer
+
+from ..design.luminaires import Product
+from . import mix, program
+from . import project as projects
+
+if TYPE_CHECKING:
+    from .light import Light
+    from .session import Wanted
+
+#: The endings of the files of results.
+ENDINGS = {
+    "glb": "glb",
+    "usd": "usdz",
+    "exr": "exr",
+    "png": "png",
+    "csv": "csv",
+    "json": "lamps.json",
+    "photometry": "zip",
+    "project": "luxfer.json",
+    "program": "py",
+}
+#: The step of Light after which each file can be written: pictures need full size, the program needs exposure and plan.
+NEEDS = {
+    "glb": "mix",
+    "usd": "mix",
+    "csv": "mix",
+    "json": "mix",
+    "photometry": "mix",
+    "exr": "second",
+    "png": "second",
+    "program": "plan",
+}
+
+
+def check_ready(kind: str, wanted: Wanted, light: Light) -> None:
+    """Raises NotReady if the results for a file are missing or belong to an older state of the project. A project file
+    needs no results."""
+    if kind not in ENDINGS:
+        raise LookupError(f"there is no result {kind}")
+    if kind in NEEDS and light.done.get(NEEDS[kind]) is not wanted.project:
+        raise luxfer.errors.NotReady("the room follows the latest change: try again in a moment")
+
+
+def write(kind: str, path: Path, wanted: Wanted, light: Light) -> None:
+    """Writes one file of results."""
+    writers: dict[str, Callable[[Path, Wanted, Light], None]] = {
+        "glb": lambda path, wanted, light: light.lit.export(path),
+        "usd": _usd,
+        "exr": _exr,
+        "png": _png,
+        "csv": _schedule,
+        "json": _schedule,
+        "photometry": _photometry,
+        "project": lambda path, wanted, light: _text(path, projects.dumps(wanted.project)),
+        "program": _program,
+    }
+    writers[kind](path, wanted, light)
+
+
+def _text(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
+
+
+def _program(path: Path, wanted: Wanted, light: Light) -> None:
+    surface = wanted.project["surface"] or light.surface
+    camera = light.camera(wanted.project)
+    _text(path, program.program(wanted.project, wanted.size, surface, camera, light.exposure))
+
+
+def _usd(path: Path, wanted: Wanted, light: Light) -> None:
+    try:
+        import pxr  # noqa: F401
+    except ImportError:
+        what = "USD needs one more package: pip install 'luxfer[usd]', then start the studio again"
+        raise LookupError(what) from None
+    from .. import usd
+
+    usd.save(light.lit, path)
+
+
+def _exr(path: Path, wanted: Wanted, light: Light) -> None:
+    assert light.render is not None
+    light.render.write_exr(path)
+
+
+def _png(path: Path, wanted: Wanted, light: Light) -> None:
+    assert light.render is not None
+    light.render.image("preview").save(path, wanted.project["exposure"] or light.exposure)
+
+
+def _schedule(path: Path, wanted: Wanted, light: Light) -> None:
+    project = wanted.project
+    surface = light.room.find_surface(project["surface"] or light.surface)
+    mix.write_schedule(path, light.transfer, surface, project["mix"], project["added"])
+
+
+def _photometry(path: Path, wanted: Wanted, light: Light) -> None:
+    """Writes IES and LDT files of each kind of whole lamp, with the means of its lamps: a flat diffuse opening, which
+    the lamps of the lit room are."""
+    kinds: dict[int, list[luxfer.types.Fixture]] = {}
+    for lamp in light.transfer.fixtures:
+        if lamp.kind and mix.factor(wanted.project["mix"], lamp.kind) > 0:
+            kinds.setdefault(lamp.kind, []).append(lamp)
+    if not kinds:
+        raise LookupError("there is no whole lamp: move the pattern until a lamp is not cut by the edge of the ceiling")
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as out:
+        for kind, lamps in sorted(kinds.items()):
+            numbers = [(*lamp.size, lamp.flux) for lamp in lamps]
+            length, width, flux = (math.fsum(values) / len(lamps) for values in zip(*numbers))
+            flux *= mix.factor(wanted.project["mix"], kind)
+            name = f"kind {letter(kind)}"
+            product = Product.panel(light.context, length, width, flux, name)
+            out.writestr(f"{name}.ies", product.photometry)
+            beside = path.with_name("one.ldt")
+            with luxfer.Distribution.load_memory(light.context, product.photometry, "ies") as distribution:
+                distribution.save(beside)
+            out.writestr(f"{name}.ldt", beside.read_bytes())
+
+
+def letter(kind: int) -> str:
+    """Returns the name of a kind on the page."""
+    return chr(64 + kind) if kind <= 26 else str(kind)
