@@ -250,8 +250,10 @@ impl Transfer {
         let params = relight::Params { constraint: target.constraint, ..self.params.relight.clone() };
         let solution = relight::run(&input, &params, job.part(0.1, 1.0))?;
 
-        let strength = Vec3::splat(self.params.white_luminance) * solution.scale.as_vec3();
-        let mut lit = unsolved.with_strength(strength);
+        // The solution scales the strength with which the stage Emission placed the texture. The white of that stage may
+        // differ from the present one.
+        let placed = unsolved.scene.materials[unsolved.placed.material].emission;
+        let mut lit = unsolved.with_strength(placed * solution.scale.as_vec3());
         if lit.scene.cameras.is_empty() {
             Arc::make_mut(&mut lit.scene).cameras.push(render::overview_camera(&world, &lit.surface));
         }
