@@ -172,7 +172,7 @@ pub struct Search<'a> {
     pub plane: Option<&'a Image>,
     /// For each node, the number of its pixels under negative strokes.
     pub negatives: &'a [f64],
-    /// Whether no stroke lies on a lamp, so that the lamps and their plane are proposals.
+    /// Whether no stroke lies on a lamp, so that the lamps are proposals.
     pub is_proposed: bool,
 }
 
