@@ -8,6 +8,7 @@ use crate::job::Job;
 use crate::render::World;
 use crate::scene::Camera;
 use crate::scene::surface::{self, Surface};
+use crate::segment::Stroke;
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
@@ -15,6 +16,9 @@ use std::sync::Arc;
 /// Maximum number of corrections of the view. The second correction uses the lamps that were found after the first
 /// one. [bench photos:tune]
 const LAMP_ROUNDS: i32 = 2;
+/// Maximum number of times that the room is enlarged if its plane is a proposal. Each time, further rows of lamps may
+/// be found. [bench photos:nostrokes]
+const ENLARGEMENTS: i32 = 2;
 
 impl Transfer {
     pub(super) fn find_view(&mut self, job: Job) -> Result<()> {
@@ -83,7 +87,14 @@ impl Transfer {
                 break;
             }
         }
-        self.enlarge_room(job.part(0.6, 1.0))
+        for round in 0..ENLARGEMENTS {
+            let step = 0.4 / f64::from(ENLARGEMENTS);
+            let part = job.part(0.6 + step * f64::from(round), 0.6 + step * f64::from(round + 1));
+            if !self.enlarge_room(part)? {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Replaces the view by a view in which all lamps, once unwarped, have the same size and shape. Does so only if the
@@ -109,27 +120,33 @@ impl Transfer {
     }
 
     /// If lamps lie beyond the plane of the room's layout, and a larger room that contains them is plausible, enlarges
-    /// the room. Then finds the plane and the lights again in the larger room.
-    fn enlarge_room(&mut self, job: Job) -> Result<()> {
+    /// the room. Then finds the plane and the lights again in the larger room. Returns whether the room may have to be
+    /// enlarged once more: only if the plane is a proposal without any stroke, and the room was enlarged.
+    fn enlarge_room(&mut self, job: Job) -> Result<bool> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), lights: Some(lights), .. } =
             &self.results
         else {
-            return Ok(());
+            return Ok(false);
         };
-        let Some(layout) = features.layout.filter(|_| !lights.beyond.is_empty()) else { return Ok(()) };
+        let Some(layout) = features.layout else { return Ok(false) };
         let centre = |p: usize| lights.mask.centre_of(p);
         let lit = (0..lights.mask.data.len()).filter(|&p| lights.mask.data[p] > 0.5);
         let face = layout.face_of(&view.perspective, lit.map(centre));
-        let beyond = lights.beyond.clone();
-        let pixels = beyond.iter().flat_map(|lamp| &lamp.pixels).map(|&p| centre(p as usize));
+        let is_proposed = plane.is_proposed && self.input.strokes.plane.is_empty();
         let is_uncertain = plane.is_proposed || self.results.view_by_lines.is_some();
-        let Some(layout) = layout.plausibly_enlarged(face, &view.perspective, pixels, is_uncertain) else {
-            return Ok(());
+        let enlarged = |lamps: &[Stroke]| {
+            let pixels = lamps.iter().flat_map(|lamp| &lamp.pixels).map(|&p| centre(p as usize));
+            layout.plausibly_enlarged(face, &view.perspective, pixels, is_uncertain)
         };
+        let mut beyond = lights.beyond.clone();
+        // In a proposal, a far region that is no lamp must not keep the others out.
+        beyond.retain(|lamp| !is_proposed || enlarged(std::slice::from_ref(lamp)).is_some());
+        let Some(layout) = enlarged(&beyond).filter(|_| !beyond.is_empty()) else { return Ok(false) };
         self.results.beyond = beyond;
         self.compute_features(Some(layout), job.part(0.0, 0.5))?;
         self.segment_plane(job.part(0.5, 0.75))?;
-        self.segment_lights(job.part(0.75, 1.0))
+        self.segment_lights(job.part(0.75, 1.0))?;
+        Ok(is_proposed)
     }
 
     pub(super) fn unwarp(&mut self, job: Job) -> Result<()> {

@@ -10,7 +10,7 @@
 //! 2. [`regions`] measures them: size in the photo and on the plane ([`footprint`]), shape, colour, and the mean
 //!    gradient across the contour.
 //! 3. [`painted`] chooses, for each positive stroke, the regions with the sharpest contours that cover it. Without
-//!    positive strokes, [`proposed`] chooses the regions most like lamps.
+//!    positive strokes, [`proposed`] chooses the regions most like lamps and like each other.
 //! 4. [`similar`] adds regions without a stroke that look like the painted ones and lie on the plane.
 //! 5. [`soft`] computes the confidence. It is one half on the contour of each region, which may run between pixels.
 //!
@@ -111,7 +111,14 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     paint.negative.iter().for_each(|&p| negatives[tree.node_of[p as usize] as usize] += 1.0);
     tree.accumulate(&mut negatives);
 
-    let search = Search { tree: &tree, regions: &regions, photo: &photo, plane: input.region, negatives: &negatives };
+    let search = Search {
+        tree: &tree,
+        regions: &regions,
+        photo: &photo,
+        plane: input.region,
+        negatives: &negatives,
+        is_proposed,
+    };
     let painted = match is_proposed {
         true => proposed::find(&search)?,
         false => brighter_than_around(

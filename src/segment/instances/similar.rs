@@ -13,9 +13,12 @@ use std::ops::RangeInclusive;
 
 /// Maximum amount by which a lamp may be darker than the darkest lamp under a stroke, in L*. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
+/// The same if the lamps are proposed: the brightest lamps are proposed first, while a user's strokes also lie on
+/// dimmer ones. [bench photos:nostrokes]
+const DIMMER_PROPOSED: f64 = 8.0;
 /// Maximum distance of a lamp's colour from the most similar colour of a lamp under a stroke, in a* and b*.
 /// [judged on 28 photos]
-const CHROMA: f64 = 12.0;
+pub const CHROMA: f64 = 12.0;
 /// Minimum contour gradient of a lamp ([`Regions::contour_gradient`]), relative to the median contour gradient of the
 /// lamps under the strokes; both are first divided by their `sharpness`. The limit is below 1 because distant lamps are
 /// small and blurred. [judged on 28 photos]
@@ -71,6 +74,11 @@ const ROUND: f64 = 1.25;
 /// around a lamp under a stroke. If the rings differ less, the region may lie on a part of the plane that the given
 /// mask of the plane misses. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
+/// If the lamps are proposed, lamps of one kind have areas that differ by at most the factor `KIND_AREA`, and aspects
+/// that differ by at most `KIND_ASPECT`, both measured on the face of the room. Bloom changes distant lamps more than
+/// near ones. [bench photos:nostrokes]
+pub const KIND_AREA: f64 = 2.0;
+const KIND_ASPECT: f64 = 1.6;
 /// Candidates are tried in descending order of contour gradient × area ^ `AREA_POWER`. Of nested regions with almost
 /// equally sharp contours, the largest is therefore tried first. [judged on 44 photos]
 const AREA_POWER: f64 = 0.2;
@@ -105,6 +113,12 @@ const BLUR: f64 = 2.0;
 /// blurred disc that has the lamp's area and, before the blur, the value 1.
 fn sharpness(area: f64) -> f64 {
     1.0 - (-area / (std::f64::consts::TAU * BLUR)).exp()
+}
+
+/// Whether two lamps, each given by its area and its aspect on the face of the room, may be of one kind.
+pub fn is_of_kind([area, aspect]: [f64; 2], [other_area, other_aspect]: [f64; 2]) -> bool {
+    let within = |a: f64, b: f64, factor: f64| a <= b * factor && b <= a * factor;
+    within(area, other_area, KIND_AREA) && within(aspect, other_aspect, KIND_ASPECT)
 }
 
 /// Regions that no stroke touches but that resemble the lamps under the strokes.
@@ -158,6 +172,8 @@ pub struct Search<'a> {
     pub plane: Option<&'a Image>,
     /// For each node, the number of its pixels under negative strokes.
     pub negatives: &'a [f64],
+    /// Whether no stroke lies on a lamp, so that the lamps are proposals.
+    pub is_proposed: bool,
 }
 
 impl Search<'_> {
@@ -178,14 +194,14 @@ impl Search<'_> {
             if k % 256 == 0 {
                 job.check()?;
             }
-            if !chosen.admits(node) {
+            if !chosen.admits(node) || self.is_unlike_proposed(painted, node as usize) {
                 continue;
             }
             let Some(ring) = surroundings::around(node, tree, photo, self.plane, &taken)? else { continue };
             let likeness = likeness.min(self.ring_likeness(&model, node as usize, &ring));
             let is_on_plane = ring.on_plane >= ON_PLANE;
             let lamps = || painted.iter().chain(&similar.found);
-            let is_beside = likeness >= 1.0 && !is_on_plane && model.is_beside(&ring);
+            let is_beside = likeness >= 1.0 && !is_on_plane && (self.is_proposed || model.is_beside(&ring));
             let is_in_hole =
                 is_beside && self.is_on_face(node as usize) && self.resembles_known_lamp(lamps(), node as usize);
             let is_in_row = is_beside && self.continues_row(lamps(), node as usize);
@@ -308,7 +324,8 @@ impl Search<'_> {
                 }
             }),
             max_breadth: max_of(of(&|n| regions.axes(n)[1])) * MAX_BREADTH_RATIO,
-            min_lightness: min_of(of(&|n| regions.colour(n)[0])) - DIMMER,
+            min_lightness: min_of(of(&|n| regions.colour(n)[0]))
+                - if self.is_proposed { DIMMER_PROPOSED } else { DIMMER },
             min_solidity: min_of(of(&|n| regions.solidity(n))) * SOLIDITY,
             colours: painted.iter().map(|&n| regions.colour(n as usize)).collect(),
             rings: colours_around,
@@ -350,6 +367,15 @@ impl Search<'_> {
                     && EQUAL_ASPECT.contains(&(surface.aspect(node) / surface.aspect(lamp as usize)))
             })
         })
+    }
+
+    /// Whether the lamps are proposed and a node is of the kind of none of them. A node that the border of the photo
+    /// cuts may be of any kind.
+    fn is_unlike_proposed(&self, proposed: &[u32], node: usize) -> bool {
+        let Some(surface) = self.regions.surface.as_ref().filter(|_| self.is_proposed) else { return false };
+        let size = |node: usize| [surface.area[node], surface.aspect(node)];
+        let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
+        !proposed.iter().any(|&lamp| is_of_kind(size(lamp as usize), size(node))) && !is_cut()
     }
 
     /// Whether one of `lamps` has nearly the size and shape of a node, and the node is round or in a row with that

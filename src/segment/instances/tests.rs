@@ -296,3 +296,64 @@ fn a_lamp_in_a_row_with_others_beyond_the_plane_is_told_apart_from_a_window() {
             .is_empty()
     );
 }
+
+#[test]
+fn without_strokes_lamps_beyond_the_plane_may_have_other_surroundings() {
+    // As above, but the ceiling beyond the mask is darker by 15 units of L*.
+    let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();
+    let rows = [[20, 20, 60, 32], [120, 20, 160, 32], [22, 70, 60, 81], [200, 66, 206, 106]];
+    let mut features = features_with(&rows);
+    for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+        if i / WIDTH > 52 && pixel[0] < 90.0 {
+            pixel[0] -= 15.0;
+        }
+    }
+    let beyond = |strokes: &[Stroke]| segment_in(&features, strokes, Some(&cut)).beyond.len();
+    assert_eq!(beyond(&[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])]), 0);
+    assert_eq!(beyond(&[]), 1);
+}
+
+#[test]
+fn without_strokes_both_kinds_of_lamps_are_proposed_but_no_thing_unlike_them() {
+    let spots = [[40, 100, 48, 108], [140, 100, 148, 108], [240, 100, 248, 108]];
+    let (streak, square) = ([20, 50, 140, 54], [280, 50, 312, 82]);
+    let features = features_with(&[&LAMPS[..], &spots, &[streak, square]].concat());
+    let mask = segment_in(&features, &[], Some(&ceiling())).mask;
+    let is_lit = |r: [usize; 4]| mask.pixel((r[0] + r[2]) / 2, (r[1] + r[3]) / 2)[0] > 0.5;
+    assert_eq!(LAMPS.map(is_lit), [true; 5]);
+    assert_eq!(spots.map(is_lit), [true; 3]);
+    assert_eq!([streak, square].map(is_lit), [false; 2]);
+}
+
+#[test]
+fn without_strokes_regions_that_are_all_unlike_are_no_proposal() {
+    let all = [
+        [10, 10, 34, 34],
+        [60, 10, 180, 14],
+        [200, 10, 260, 70],
+        [20, 60, 150, 80],
+        [280, 10, 290, 20],
+        [280, 40, 288, 90],
+    ];
+    let (features, plane) = (features_with(&all), ceiling());
+    let input = Input { features: &features, strokes: &[], region: Some(&plane) };
+    let error = run(&input, &Params::for_lights(), Monitor::default().job()).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::Degenerate);
+}
+
+#[test]
+fn without_strokes_light_with_soft_edges_on_the_ceiling_is_no_lamp() {
+    let plane = ceiling();
+    // The L* falls by 1.5 or by 25 per pixel, from 15 pixels around the centre on.
+    for (slope, is_lamp) in [(1.5, false), (25.0, true)] {
+        let mut features = features_with(&[]);
+        for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+            let distance = (i % WIDTH) as f32 - 160.0;
+            let distance = distance.hypot((i / WIDTH) as f32 - 60.0);
+            pixel[0] = pixel[0].max((100.0 - slope * (distance - 15.0)).min(100.0));
+        }
+        let input = Input { features: &features, strokes: &[], region: Some(&plane) };
+        let found = run(&input, &Params::for_lights(), Monitor::default().job());
+        assert_eq!(found.is_ok(), is_lamp, "L* falls by {slope} per pixel");
+    }
+}
