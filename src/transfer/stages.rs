@@ -267,8 +267,8 @@ impl Transfer {
         let params = relight::Params { constraint: target.constraint, ..self.params.relight.clone() };
         let solution = relight::run(&input, &params, job.part(0.1, 1.0))?;
 
-        // The solution scales the strength with which the stage Emission placed the texture. The white of that stage may
-        // differ from the present one.
+        // The solution scales the strength with which the stage Emission placed the texture. At that time the white may
+        // have been another one.
         let placed = unsolved.scene.materials[unsolved.placed.material].emission;
         let mut lit = unsolved.with_strength(placed * solution.scale.as_vec3());
         if lit.scene.cameras.is_empty() {
