@@ -403,7 +403,7 @@ typedef struct luxfer_lamps_response {
     uint32_t reserved;
     /** Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel. */
     double mean[3];
-    /** Half-widths of the 95 % confidence intervals of the field mean, in cd/m². */
+    /** Half-widths of the 95 % confidence intervals of `mean`, per channel, in cd/m². */
     double half_width[3];
 } luxfer_lamps_response;
 

@@ -574,9 +574,8 @@ typedef struct luxfer_warning {
     luxfer_warning_code code;
     /**
      * The stage whose result is in doubt: a LUXFER_STAGE_ value. For a luxfer_segment it is LUXFER_STAGE_LIGHTS if
-     * luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene, and for the size of the
-     * scene of a luxfer_transfer, it is LUXFER_STAGE_SCENE; for a luxfer_guides or a luxfer_stylize it is
-     * LUXFER_STAGE_STYLIZE.
+     * luxfer_segment_set_region gave a mask, else LUXFER_STAGE_PLANE; for a luxfer_scene, and for the scene of a
+     * luxfer_transfer, it is LUXFER_STAGE_SCENE; for a luxfer_guides or a luxfer_stylize it is LUXFER_STAGE_STYLIZE.
      */
     luxfer_stage stage;
     /** 1 if the warning points to a place, else 0. */

@@ -1960,8 +1960,8 @@ class Warning:
     """Kind of the warning: WarningCode."""
     stage: Stage
     """The stage whose result is in doubt: Stage. For a luxfer_segment it is Stage.LIGHTS if
-    luxfer_segment_set_region gave a mask, else Stage.PLANE; for a luxfer_scene, and for the size of the scene
-    of a luxfer_transfer, it is Stage.SCENE; for a luxfer_guides or a luxfer_stylize it is Stage.STYLIZE."""
+    luxfer_segment_set_region gave a mask, else Stage.PLANE; for a luxfer_scene, and for the scene of a
+    luxfer_transfer, it is Stage.SCENE; for a luxfer_guides or a luxfer_stylize it is Stage.STYLIZE."""
     has_place: int
     """1 if the warning points to a place, else 0."""
     severity: float
@@ -2123,7 +2123,7 @@ class LampsResponse:
     mean: tuple[float, float, float]
     """Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel."""
     half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of the field mean, in cd/m²."""
+    """Half-widths of the 95 % confidence intervals of `mean`, per channel, in cd/m²."""
 
 
 class ImportanceParams(TypedDict, total=False):
