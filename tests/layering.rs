@@ -237,7 +237,7 @@ fn the_check_of_constants_sees_every_kind() {
         assert_eq!(constants::origins(&tagged, true), constants::Origins::default(), "{kind}");
     }
     assert_eq!(constants::origins(kinds[3], false).wrong.len(), 0);
-    // A tag that is not documented is none.
+    // A constant whose tag is not documented counts as a constant without a tag.
     assert_eq!(constants::origins("/// Half. [origin not recorded]\nconst A: f32 = 0.5;", true).wrong.len(), 1);
     for other in
         ["const A: usize = 1;", "pub const fn a(b: f32) -> f32 {", "let a: f32 = 1.0;", "fn a<const N: f32>() {"]

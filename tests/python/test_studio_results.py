@@ -38,7 +38,7 @@ class Results(Case):
         self.project = project.checked({"luxfer_studio": 1, "photo": named, "noise": 1.0, "exposure": 1e-3})
         self.session = Session("session01", context(), self.files, self.folder / "kept.json")
         self.addCleanup(self.session.close)
-        # What takes time, and is no matter of these tests: paths of the strength, and the time of the first picture.
+        # Save time: these tests need neither many paths for the strength nor a good first picture.
         for name, value in (("RELIGHT", {"target_error": 0.1, "paths": 1 << 13}), ("FIRST_MS", 50)):
             patch = mock.patch.object(light, name, value)
             patch.start()

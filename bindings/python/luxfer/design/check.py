@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 
 #: Factor of the paths from one look to the next, and seeds from one look to the next. [convention]
 GROWTH, SEED_STEP = 4, 7919
-#: The horizontal illuminance of modelling has seeds this far from those of the cylindrical one. [convention]
+#: Added to the seeds of the cylindrical illuminance, it gives the seeds of the horizontal illuminance for modelling, so
+#: that the two are independent. [convention]
 FLAT_SEED = 500_009
 #: Share of the looked-at illuminance that light left out of a glare rating may have. [rounding]
 UNRATED = 1e-3

@@ -25,7 +25,7 @@ WIDTH, HEIGHT, FIELD_HEIGHT, BORDER, TOP = 480.0, 300.0, 245.0, 42.0, 16.0
 READABLE = 17.0
 #: Colours of lines: room, task, band, observers, lamps. [convention]
 INK, TASK, BAND, EYE, LAMP = "#222222", "#b00020", "#b06000", "#00508f", "#c08a00"
-#: Areas that the plan shows, with the colours of their outlines: those of emergency light are green. [convention]
+#: Kinds of areas that the plan shows, and the colours of their outlines; green is emergency light. [convention]
 OUTLINES = {
     "task": TASK,
     "surrounding": BAND,
