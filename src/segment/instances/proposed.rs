@@ -8,7 +8,7 @@
 
 use super::painted::MIN_AREA;
 use super::similar::{CHROMA, KIND_AREA, Search, is_of_kind};
-use super::surroundings::{self, Bounds};
+use super::surroundings;
 use super::tree::Disjoint;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect, try_push, try_vec};
@@ -43,8 +43,8 @@ const FURTHER_KIND: f64 = 0.3;
 /// then the regions are unlike each other. [bench photos:nostrokes]
 const MIN_SHARE: f64 = 0.35;
 
-/// Maximum number of regions that are compared with each other; those of highest score come first. It bounds the time
-/// for photos of noise. [convention]
+/// Only this number of regions with the highest scores are compared with each other, because photos of noise have very
+/// many regions. [convention]
 const MAX_COMPARED: usize = 1000;
 
 /// Returns the brightest pixels of a plane, at least one. Errors: the plane has no pixel (`Degenerate`).
@@ -113,8 +113,8 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
     Ok(lamps)
 }
 
-/// Chooses the lamps that are alike: those of the kind with the largest total score, and those of further kinds of at
-/// least two lamps. `lamps` holds nodes with their scores. A lamp that the border of the photo cuts belongs to each
+/// Chooses the lamps of one or more kinds: the kind with the largest total score, and further kinds of at least two
+/// lamps. `lamps` holds nodes with their scores. A lamp that the border of the photo cuts belongs to each
 /// kind of which it may be a part. Returns no lamp if most regions are unlike the lamps of the first kind, and all
 /// lamps if the room has no box layout.
 fn alike(search: &Search, lamps: &[(u32, f64)]) -> Result<Vec<u32>> {
@@ -125,7 +125,7 @@ fn alike(search: &Search, lamps: &[(u32, f64)]) -> Result<Vec<u32>> {
         area: surface.area[node as usize],
         aspect: surface.aspect(node as usize),
         colour: search.regions.colour(node as usize),
-        is_cut: Bounds::of(search.tree.pixels(node), search.photo, 0).touch_border(search.photo),
+        is_cut: search.is_cut(node),
     }))?;
     kinds(all)
 }

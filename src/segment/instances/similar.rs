@@ -344,13 +344,13 @@ impl Search<'_> {
         let Some((on_surface, surface)) = model.surface.as_ref().zip(regions.surface.as_ref()) else {
             return (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
         };
-        let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
         if surface.area[node] > on_surface.area[1] {
             return false;
         }
         let is_whole = surface.area[node] >= on_surface.area[0]
             && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
-        area >= model.min_area && (is_whole || surface.area[node] >= MIN_CUT_AREA * on_surface.area[0] && is_cut())
+        let may_be_cut = || surface.area[node] >= MIN_CUT_AREA * on_surface.area[0] && self.is_cut(node as u32);
+        area >= model.min_area && (is_whole || may_be_cut())
     }
 
     /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
@@ -374,8 +374,12 @@ impl Search<'_> {
     fn is_unlike_proposed(&self, proposed: &[u32], node: usize) -> bool {
         let Some(surface) = self.regions.surface.as_ref().filter(|_| self.is_proposed) else { return false };
         let size = |node: usize| [surface.area[node], surface.aspect(node)];
-        let is_cut = || Bounds::of(self.tree.pixels(node as u32), self.photo, 0).touch_border(self.photo);
-        !proposed.iter().any(|&lamp| is_of_kind(size(lamp as usize), size(node))) && !is_cut()
+        !proposed.iter().any(|&lamp| is_of_kind(size(lamp as usize), size(node))) && !self.is_cut(node as u32)
+    }
+
+    /// Whether a node touches the border of the photo, which may cut it.
+    pub fn is_cut(&self, node: u32) -> bool {
+        Bounds::of(self.tree.pixels(node), self.photo, 0).touch_border(self.photo)
     }
 
     /// Whether one of `lamps` has nearly the size and shape of a node, and the node is round or in a row with that
