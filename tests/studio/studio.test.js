@@ -332,7 +332,8 @@ test("every warning of the library is shown, with what to do here", { skip }, as
     };
   });
   await page.goto(address);
-  await page.waitForFunction(() => document.body.dataset.last);
+  // A photo that arrives takes all notes away, so the messages wait until the server has sent its last one.
+  await page.waitForFunction(() => document.body.dataset.idle);
   const list = codes.map((code, i) => ({
     code,
     stage: "lights",
