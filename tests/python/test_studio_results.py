@@ -13,61 +13,21 @@ from types import SimpleNamespace
 from unittest import mock
 
 from support import Case, context, demo, luxfer, np
+from support_studio import StudioCase
 
 from luxfer.cli.plane import above_floor
-from luxfer.studio import files, light, painting, pictures, program, project, results, security
+from luxfer.studio import painting, pictures, program, project, results
 from luxfer.studio.light import Light
 from luxfer.studio.room import work_plane
 from luxfer.studio.results import ENDINGS
-from luxfer.studio.session import Session
 
 
 HAS_USD = importlib.util.find_spec("pxr") is not None
 KINDS = [kind for kind in ENDINGS if kind != "usd" or HAS_USD]
 
 
-class Results(Case):
+class Results(StudioCase):
     """Results as files, without a server."""
-
-    def setUp(self):
-        super().setUp()
-        self.files = files.Files(self.folder / "state", security.Allowed())
-        demo()[0].save(self.folder / "office.png")
-        photo = self.files.upload("office.png", (self.folder / "office.png").read_bytes())
-        named = {"name": photo.name, "sha256": photo.sha256}
-        self.project = project.checked({"luxfer_studio": 1, "photo": named, "noise": 1.0, "exposure": 1e-3})
-        self.session = Session("session01", context(), self.files, self.folder / "kept.json")
-        self.addCleanup(self.session.close)
-        # Save time: these tests need neither many paths for the strength nor a good first picture.
-        for name, value in (("RELIGHT", {"target_error": 0.1, "paths": 1 << 13}), ("FIRST_MS", 50)):
-            patch = mock.patch.object(light, name, value)
-            patch.start()
-            self.addCleanup(patch.stop)
-
-    def edit(self, seen=lambda header: None, draft=False, until="idle", **changes):
-        """Sends a state of the project, and waits for a message: the last one comes when the work is done."""
-        ended, failures = threading.Event(), []
-
-        def listen(header, payload):
-            seen(header)
-            if header["type"] == "failed":
-                failures.append(header["message"])
-            if header["type"] in (until, "failed"):
-                ended.set()
-
-        self.session.listeners[:] = [listen]
-        whole = {**self.project, **changes}
-        self.session.edit({"project": whole, "size": [160, 104], "draft": draft})
-        if not draft:
-            self.assertTrue(ended.wait(120))
-            self.assertEqual(failures, [])
-
-    def out(self, kind):
-        """The content of a file; None if it is not ready."""
-        try:
-            return self.session.out(kind, self.folder).read_bytes()
-        except luxfer.errors.NotReady:
-            return None
 
     def test_results_belong_to_the_project_that_is_shown(self):
         early = {}
@@ -80,7 +40,7 @@ class Results(Case):
                 self.session.out("exr", self.folder).rename(self.folder / "early.exr")
 
         self.edit(seen)
-        self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program"])
+        self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program", "program-c"])
         self.assertEqual(luxfer.Image.load(context(), self.folder / "early.exr").size[:2], (160, 104))
         first = {kind: self.out(kind) for kind in KINDS}
         self.assertEqual([kind for kind, content in first.items() if content is None], [])

@@ -13,6 +13,7 @@ const KINDS: [string, string, string][] = [
   ["photometry", "IES and LDT", "a zip with both files for each kind of lamp"],
   ["project", "Project (JSON)", "opens here again with the same result"],
   ["program", "Program (Python)", "does the same without the studio"],
+  ["program-c", "Program (C)", "the same in C, which is C++ too"],
 ];
 
 export function showOut(session: string, openProject: () => void): void {

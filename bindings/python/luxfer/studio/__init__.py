@@ -24,6 +24,7 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 | project | the entries of a project and their checks |
 | results | writes the files of results |
 | program | converts a project to a Python program |
+| program_c | converts a project to a C program, by program.c |
 """
 
 from __future__ import annotations

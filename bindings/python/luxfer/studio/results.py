@@ -1,4 +1,4 @@
-"""Results as files: the room, pictures, schedules of the lamps, their photometry, the project and its program."""
+"""Results as files: the room, pictures, schedules of the lamps, their photometry, the project and its programs."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import luxfer
 
 from ..design.luminaires import Product
-from . import mix, program
+from . import mix, program, program_c
 from . import project as projects
 
 if TYPE_CHECKING:
@@ -29,8 +29,9 @@ ENDINGS = {
     "photometry": "zip",
     "project": "luxfer.json",
     "program": "py",
+    "program-c": "c",
 }
-#: The step of Light after which each file can be written: pictures need full size, the program needs exposure and plan.
+#: The step of Light after which each file can be written: pictures need full size, the programs need exposure and plan.
 NEEDS = {
     "glb": "mix",
     "usd": "mix",
@@ -40,6 +41,7 @@ NEEDS = {
     "exr": "second",
     "png": "second",
     "program": "plan",
+    "program-c": "plan",
 }
 
 
@@ -63,7 +65,8 @@ def write(kind: str, path: Path, wanted: Wanted, light: Light) -> None:
         "json": _schedule,
         "photometry": _photometry,
         "project": lambda path, wanted, light: _text(path, projects.dumps(wanted.project)),
-        "program": _program,
+        "program": lambda path, wanted, light: _program(path, wanted, light, program.program),
+        "program-c": lambda path, wanted, light: _program(path, wanted, light, program_c.program),
     }
     writers[kind](path, wanted, light)
 
@@ -72,10 +75,10 @@ def _text(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-def _program(path: Path, wanted: Wanted, light: Light) -> None:
+def _program(path: Path, wanted: Wanted, light: Light, written: Callable[..., str]) -> None:
     surface = wanted.project["surface"] or light.surface
     camera = light.camera(wanted.project)
-    _text(path, program.program(wanted.project, wanted.size, surface, camera, light.exposure))
+    _text(path, written(wanted.project, wanted.size, surface, camera, light.exposure))
 
 
 def _usd(path: Path, wanted: Wanted, light: Light) -> None:

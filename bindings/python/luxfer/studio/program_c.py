@@ -1,0 +1,155 @@
+"""Converts a project to a C program that needs no studio and gives bit-identical results.
+
+program.c beside this file is its source without the values of the project. A part between "[start NAME]" and
+"[end NAME]" is left out if the project does not need it.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import mix
+from .light import REACH, RELIGHT
+from .live import PHASES
+from .project import Project
+from .room import texture_settings
+
+SOURCE = Path(__file__).with_name("program.c")
+#: Numbers of an array on one line.
+PER_LINE = 8
+
+
+def quoted(text: str) -> str:
+    """Returns a text as a C string in UTF-8. Bytes beyond ASCII, and a question mark, which could begin a trigraph,
+    become octal escapes of three digits."""
+    plain = set(range(0x20, 0x7F)) - set(b'"\\?')
+    return '"' + "".join(chr(b) if b in plain else f"\\{b:03o}" for b in text.encode()) + '"'
+
+
+def numbers(values: Any) -> str:
+    """Returns numbers as a list in C, with all digits."""
+    texts = [repr(float(value)) for value in values]
+    lines = [", ".join(texts[at : at + PER_LINE]) for at in range(0, len(texts), PER_LINE)]
+    return "{" + ",\n    ".join(lines) + "}"
+
+
+def floats(values: Any) -> str:
+    """As numbers, rounded to floats as the Python package rounds them."""
+    return numbers(np.asarray(values, np.float32)).replace(",", "f,").replace("}", "f}")
+
+
+def one_float(value: float) -> str:
+    return floats([value])[1:-1]
+
+
+def array(kind: str, name: str, rows: list[str], unused: str, width: str = "") -> str:
+    """Returns the array NAMEs, and NAME_count, the number of its rows. An array in C has at least one row, so without
+    rows it has `unused`."""
+    body = ",\n    ".join(rows or [unused])
+    return (
+        f"static const {kind} {name}s[]{width} = {{\n    {body}\n}};\n"
+        f"static const size_t {name}_count = {len(rows)};\n"
+    )
+
+
+def strokes_of(project: Project) -> str:
+    """Returns the strokes: all points in one array, and for each stroke its part of it."""
+    points: list[float] = []
+    rows = []
+    for stroke in project["strokes"]:
+        phase, positive = PHASES[stroke["kind"]]
+        first, count = len(points) // 2, len(stroke["points"]) // 2
+        points += stroke["points"]
+        radius = one_float(max(stroke["radius"], 0.5))
+        rows.append(f"{{LUXFER_PHASE_{phase.upper()}, {int(positive)}, {radius}, {first}, {count}}}")
+    return (
+        "/* Strokes on the photo: x and y of all points in pixels; then, for each stroke, its mask, whether it is on\n"
+        " * it, its radius, its first point and the number of its points. */\n"
+        f"static const float points[] = {floats(points or [0.0, 0.0])};\n"
+        "typedef struct stroke {\n    luxfer_phase phase;\n    int32_t positive;\n    float radius;\n"
+        "    size_t first, count;\n} stroke;\n" + array("stroke", "stroke", rows, "{0, 0, 0.0f, 0, 0}")
+    )
+
+
+def data_of(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:
+    """Returns the values of a project as C."""
+    room = project["room"]["name"] if project["room"] else ""
+    out = [
+        f"static const char *const photo_file = {quoted(project['photo']['name'])};\n",
+        f"static const char *const room_file = {quoted(room)}; /* empty: the generated room */\n",
+        f"static const char *const surface_name = {quoted(surface)};\n\n",
+        strokes_of(project),
+        "\n/* Places without lamps: u0, v0, u1, v1 in metres on the surface. */\n",
+        array("double", "zone", [numbers(zone) for zone in project["zones"]], "{0, 0, 0, 0}", "[4]"),
+    ]
+    if project["removed"]:
+        out += [
+            "\n/* A pixel on each lamp of the photo that was taken out; it may miss the lamp by this share of the width. */\n",
+            array("double", "removed_lamp", [numbers(place) for place in project["removed"]], "{0, 0}", "[2]"),
+            f"static const double reach = {REACH!r};\n",
+        ]
+    if mix.is_plain(project["mix"], project["added"]):
+        out.append("static const size_t added_lamp_count = 0;\n")
+    else:
+        dimmed = [f"{{{int(kind)}u, {factor!r}}}" for kind, factor in project["mix"].items()]
+        out += [
+            "\n/* The factor of each kind of lamp, and added lamps: kind, u and v in metres on the surface. */\n",
+            "typedef struct dimmer {\n    uint32_t kind;\n    double factor;\n} dimmer;\n",
+            array("dimmer", "dimmer", dimmed, "{0u, 0.0}"),
+            array("double", "added_lamp", [numbers(lamp) for lamp in project["added"]], "{0, 0, 0}", "[3]"),
+        ]
+    out += [
+        "\n/* The picture. */\n",
+        f"static const uint32_t picture_width = {size[0]}, picture_height = {size[1]};\n",
+        f"static const float camera_position[3] = {floats(camera['position'])};\n",
+        f"static const float camera_target[3] = {floats(camera['target'])};\n",
+        f"static const float camera_fov_y = {one_float(camera['fov_y'])};\n",
+        f"static const float exposure = {one_float(project['exposure'] or exposure)}; /* of 1 cd/m2 */\n",
+    ]
+    return "".join(out)
+
+
+def assignments(place: str, settings: dict[str, Any]) -> str:
+    """Returns lines that set fields of a struct."""
+    lines = []
+    for name, value in settings.items():
+        if isinstance(value, (list, tuple)):
+            lines += [f"    {place}.{name}[{i}] = {float(entry)!r};\n" for i, entry in enumerate(value)]
+        elif isinstance(value, str):
+            lines.append(f"    {place}.{name} = LUXFER_PATTERN_{value.upper()};\n")
+        elif isinstance(value, int):
+            lines.append(f"    {place}.{name} = {value}u;\n")
+        else:
+            lines.append(f"    {place}.{name} = {float(value)!r};\n")
+    return "".join(lines)
+
+
+def settings_of(project: Project) -> str:
+    """Returns the lines that set the settings of the transfer."""
+    texture = texture_settings(project)
+    pattern = texture.pop("pattern")
+    return assignments("params", texture) + assignments("pattern", pattern) + assignments("relight", RELIGHT)
+
+
+def program(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:
+    """Returns the text of the program, from the arguments of program.program."""
+    is_plain = mix.is_plain(project["mix"], project["added"])
+    is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain}
+    is_needed["regions"] = is_needed["removed"] or is_needed["mix"]
+    is_needed["pixels"] = is_needed["regions"]
+    text = SOURCE.read_text(encoding="utf-8")
+    for name, is_kept in is_needed.items():
+        part = rf" */\* \[start {name}\] \*/\n(.*?) */\* \[end {name}\] \*/\n"
+        text = re.sub(part, r"\1" if is_kept else "", text, flags=re.DOTALL)
+    render = (project["plan"] or {"render": {"target_error": project["noise"]}})["render"]
+    for mark, body in (
+        ("/* [data] */\n", data_of(project, size, surface, camera, exposure)),
+        ("    /* [settings] */\n", settings_of(project)),
+        ("    /* [render] */\n", assignments("params", render)),
+    ):
+        text = text.replace(mark, body)
+    return text

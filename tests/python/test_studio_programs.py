@@ -1,0 +1,118 @@
+"""The programs that the studio writes: run without the studio, they give its room, schedule and picture to the bit.
+Runs where benches/peers/install.sh has installed `studio`; the C program needs a compiler."""
+
+import csv
+import io
+import os
+import shutil
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+from support import context, luxfer, np
+from support_studio import StudioCase
+
+from luxfer import _abi
+from luxfer._library import library
+from luxfer.studio import program_c, project
+
+ROOT = Path(__file__).resolve().parents[2]
+CC, CXX = shutil.which("cc"), shutil.which("c++")
+STRICT = ["-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-I", str(ROOT / "include")]
+
+
+class Programs(StudioCase):
+    """Programs of projects."""
+
+    def run_in(self, name, command):
+        """Runs a program in a folder of its own and returns the folder."""
+        place = self.folder / name
+        place.mkdir()
+        # Where the library has not been installed, there may be no file of its SONAME.
+        (place / f"libluxfer.so.{_abi.LUXFER_VERSION_MAJOR}.{_abi.LUXFER_VERSION_MINOR}").symlink_to(library._name)
+        paths = {"PYTHONPATH": str(ROOT / "bindings" / "python"), "LD_LIBRARY_PATH": str(place)}
+        command = [*command, self.folder / "office.png"]
+        environment = {**os.environ, **paths}
+        ended = subprocess.run(command, cwd=place, env=environment, timeout=120, text=True, capture_output=True)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        return place
+
+    def compile(self, source, *options):
+        """Compiles a C program, and checks that it is C++ too."""
+        subprocess.run([CC, "-std=c11", "-pedantic", *STRICT, source, *options], check=True, timeout=120)
+        if CXX:
+            subprocess.run([CXX, "-x", "c++", "-std=c++17", "-fsyntax-only", *STRICT, source], check=True, timeout=120)
+
+    def check(self, place, studio):
+        """Compares what a program has written with the files of the studio."""
+        self.assertEqual((place / "lit.glb").read_bytes(), studio["glb"])
+        pixels = luxfer.Image.load(context(), place / "render.exr").numpy()
+        self.assertTrue(np.array_equal(pixels, studio["pixels"]), float(np.abs(pixels - studio["pixels"]).max()))
+        rows, wanted = (
+            list(csv.DictReader(io.StringIO(text))) for text in ((place / "luminaires.csv").read_text(), studio["csv"])
+        )
+        self.assertEqual(len(rows), len(wanted))
+        for row, other in zip(rows, wanted):
+            self.assertEqual(list(row), list(other))
+            for name, value in other.items():
+                self.assertLess(abs(float(row[name]) - float(value)), 1e-5 * abs(float(value)) + 1e-6, name)
+
+    def test_they_repeat_the_studio(self):
+        size = luxfer.Image.load(context(), self.folder / "office.png").size[:2]
+        on_lamp = [0.5 * size[0], 0.39 * size[1]]
+        strokes = [
+            {"kind": kind, "radius": 3.0, "points": [share * side for share, side in zip(at, size * 2)]}
+            for kind, at in (
+                ("plane", (0.15, 0.25, 0.4, 0.14)),
+                ("not-plane", (0.2, 0.95, 0.7, 0.93)),
+                ("light", (0.5, 0.39, 0.62, 0.41)),
+            )
+        ]
+        self.edit(
+            strokes=strokes,
+            removed=[on_lamp],
+            zones=[[0.0, 0.0, 1.0, 1.5]],
+            pattern={**self.project["pattern"], "offset": [0.25, 0.1], "rotation": 0.1},
+            mix={"1": 0.375},
+            added=[[1, 3.0, 2.0], [99, 1.0, 1.0]],  # there is no kind 99
+            white=150.0,
+            camera={"position": [1.0, 1.5, 0.5], "target": [0.0, 1.25, 0.0], "fov_y": 1.1},
+        )
+        light = self.session.light
+        taken = [mask.numpy()[..., 0] > 0.5 for mask in (light.lights, light.transfer.image("lights-mask"))]
+        self.assertEqual([bool(mask[int(on_lamp[1]), int(on_lamp[0])]) for mask in taken], [True, False])
+        picture = self.session.out("exr", self.folder)
+        studio = {
+            "glb": self.out("glb"),
+            "csv": self.out("csv").decode(),
+            "pixels": luxfer.Image.load(context(), picture).numpy(),
+        }
+        with self.subTest("Python"):
+            script = self.session.out("program", self.folder)
+            self.check(self.run_in("python", [sys.executable, script]), studio)
+        with self.subTest("C"):
+            if CC is None:
+                self.skipTest("there is no C compiler")
+            compiled = self.folder / "program"
+            self.compile(self.session.out("program-c", self.folder), library._name, "-lm", "-o", compiled)
+            self.check(self.run_in("c", [compiled]), studio)
+
+    @unittest.skipUnless(CC, "there is no C compiler")
+    def test_a_program_has_only_the_parts_that_it_needs(self):
+        camera = {"position": (0, 1, 2), "target": (0, 1, 0), "fov_y": 1.0}
+        names = "B\u00fcro.png", "it's \"here\"??/.png", "back\\slash.png"
+        for name, changes in zip(names, ({}, {"removed": [[1.0, 2.0]]}, {"mix": {"1": 0.5}})):
+            named = {"name": name, "sha256": "0" * 64}
+            whole = project.checked({"luxfer_studio": 1, "photo": named, "room": named, **changes})
+            text = program_c.program(whole, (72, 48), name, camera, 0.01)
+            self.assertEqual("take_out" in text, "removed" in changes)
+            self.assertEqual("mix_lamps" in text, "mix" in changes)
+            self.assertNotIn("/* [", text)
+            source = self.folder / "small.c"
+            source.write_text(text, encoding="utf-8")
+            self.compile(source, "-fsyntax-only")
+
+
+if __name__ == "__main__":
+    unittest.main()
