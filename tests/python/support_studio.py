@@ -3,13 +3,22 @@
 import threading
 from unittest import mock
 
-from support import Case, context, demo, luxfer
+from support import Case, context, demo, luxfer, np
 
 from luxfer.studio import files, light, program, program_c, project, security
 from luxfer.studio.session import Session
 
 #: Saves time: these tests do not need many paths for the strength of the lamps.
 RELIGHT = {"target_error": 0.1, "paths": 1 << 13}
+
+
+def inner_grid(view, share=0.25):
+    """The corners, in the photo, of the middle part of the plane that a message "view" describes."""
+    width, height = view["unwarped"]
+    low, high = 0.5 - share / 2, 0.5 + share / 2
+    corners = np.array([(low, low), (high, low), (high, high), (low, high)]) * (width, height)
+    mapped = np.column_stack((corners, np.ones(4))) @ np.reshape(view["to_photo"], (3, 3)).T
+    return (mapped[:, :2] / mapped[:, 2:]).ravel().tolist()
 
 
 class StudioCase(Case):
@@ -48,6 +57,18 @@ class StudioCase(Case):
         if not draft:
             self.assertTrue(ended.wait(120))
             self.assertEqual(failures, [])
+
+    def strokes(self):
+        """Strokes on the generated photo."""
+        size = luxfer.Image.load(context(), self.folder / "office.png").size[:2]
+        return [
+            {"kind": kind, "radius": 3.0, "points": [share * side for share, side in zip(at, size * 2)]}
+            for kind, at in (
+                ("plane", (0.15, 0.25, 0.4, 0.14)),
+                ("not-plane", (0.2, 0.95, 0.7, 0.93)),
+                ("light", (0.5, 0.39, 0.62, 0.41)),
+            )
+        ]
 
     def out(self, kind):
         """The content of a file; None if it is not ready."""

@@ -247,7 +247,6 @@ class Work(Case):
             self.assertGreater(len(content), 100, kind)
         file = self.folder / "saved.luxfer.json"
         file.write_bytes(server.get(f"{server.token}/out/project?session=session01")[2])
-        (self.folder / "program.py").write_bytes(server.get(f"{server.token}/out/program?session=session01")[2])
         server.close()
 
         again = self.serve(file)
@@ -256,16 +255,6 @@ class Work(Case):
         self.assertEqual(seen["texture"]["digest"], first["texture"]["digest"])
         for kind in ("csv", "png"):
             self.assertEqual(again.get(f"{again.token}/out/{kind}?session=session01")[2], kept[kind][2], kind)
-
-        done = subprocess.run(
-            [sys.executable, "program.py"],
-            cwd=self.folder,
-            env={**os.environ, "PYTHONPATH": str(PACKAGE)},
-            capture_output=True,
-        )
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual((self.folder / "luminaires.csv").read_bytes(), kept["csv"][2])
-        self.assertEqual((self.folder / "render.png").read_bytes(), kept["png"][2])
 
     def test_lamps_are_taken_out_of_photo_and_room(self):
         server = self.serve(self.photo)

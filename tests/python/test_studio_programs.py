@@ -11,7 +11,7 @@ import unittest
 from pathlib import Path
 
 from support import context, luxfer, np
-from support_studio import StudioCase
+from support_studio import StudioCase, inner_grid
 
 from luxfer import _abi
 from luxfer._library import library
@@ -59,19 +59,15 @@ class Programs(StudioCase):
                 self.assertLess(abs(float(row[name]) - float(value)), 1e-5 * abs(float(value)) + 1e-6, name)
 
     def test_they_repeat_the_studio(self):
-        size = luxfer.Image.load(context(), self.folder / "office.png").size[:2]
-        on_lamp = [0.5 * size[0], 0.39 * size[1]]
-        strokes = [
-            {"kind": kind, "radius": 3.0, "points": [share * side for share, side in zip(at, size * 2)]}
-            for kind, at in (
-                ("plane", (0.15, 0.25, 0.4, 0.14)),
-                ("not-plane", (0.2, 0.95, 0.7, 0.93)),
-                ("light", (0.5, 0.39, 0.62, 0.41)),
-            )
-        ]
+        strokes, seen = self.strokes(), {}
+        on_lamp = strokes[2]["points"][:2]
+        self.edit(lambda header: seen.update({header["type"]: header}), strokes=strokes, until="view")
+        grid = inner_grid(seen["view"])
+        grid[0] += 1.5
         self.edit(
             strokes=strokes,
             removed=[on_lamp],
+            grid=grid,
             zones=[[0.0, 0.0, 1.0, 1.5]],
             pattern={**self.project["pattern"], "offset": [0.25, 0.1], "rotation": 0.1},
             mix={"1": 0.375},

@@ -191,6 +191,53 @@ test("by keys alone", { skip }, async (t) => {
   assert.deepEqual(page.problems, []);
 });
 
+test("the grid of the plane: dragged by a corner and by keys, and back to the found one", { skip }, async (t) => {
+  const { address } = await server();
+  const page = await open(t, await browse(t), address);
+  const original = await state(page, "texture");
+  const [masks, found] = [await state(page, "masks"), await state(page, "vanishing")];
+  assert.equal(await state(page, "grid"), "found");
+  assert.ok(!(await page.locator("#grid-found").isVisible()));
+  await page.locator("label:has(#tool-grid)").click();
+  await picture(page, "5-grid");
+
+  // The page states where the corners are; the first is dragged, and the grid then runs through where it was dropped.
+  const corner = async (i) => (await state(page, "corners")).split(" ").map(Number).slice(2 * i, 2 * i + 2);
+  const size = await page.evaluate(() => {
+    const { width, height } = document.getElementById("photo").dataset;
+    return [Number(width), Number(height)];
+  });
+  const before = await corner(0);
+  const other = await corner(2);
+  const [x, y] = await place(page, before[0] / size[0], before[1] / size[1]);
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  await page.mouse.move(x + 12, y + 6, { steps: 3 });
+  await picture(page, "5-grid-dragged");
+  await page.mouse.up();
+  await changed(page, "texture", original);
+  assert.equal(await state(page, "grid"), "dragged");
+  assert.notEqual(await state(page, "vanishing"), found);
+  assert.equal(await state(page, "masks"), masks);
+  assert.ok((await corner(0))[0] > before[0] + 1 && (await corner(0))[1] > before[1] + 0.5);
+  assert.deepEqual(await corner(2), other);
+  assert.equal(await state(page, "strokes"), "0");
+
+  // By keys: the next corner, then a step.
+  const vanishing = await state(page, "vanishing");
+  await page.locator("#photo").focus();
+  await page.keyboard.press("Space");
+  await page.keyboard.press("ArrowUp");
+  await changed(page, "vanishing", vanishing);
+  await page.locator("#grid-found").click();
+  await page.waitForFunction((texture) => document.body.dataset.texture === texture, original);
+  assert.equal(await state(page, "grid"), "found");
+  assert.equal(await state(page, "vanishing"), found);
+  await page.locator("#undo").click();
+  await page.waitForFunction(() => document.body.dataset.grid === "dragged");
+  assert.deepEqual(page.problems, []);
+});
+
 /** What the page says of the illuminance, once it has another value. */
 async function otherLux(page, before) {
   const mean = () => page.evaluate(() => document.getElementById("lux").dataset.mean);
@@ -333,8 +380,8 @@ test("every warning of the library is shown, with what to do here", { skip }, as
     };
   });
   await page.goto(address);
-  // A photo that arrives takes all notes away, so the messages wait until the server has sent its last one.
-  await page.waitForFunction(() => document.body.dataset.idle);
+  // A photo that arrives takes all notes away, so the messages wait until its light is there; no photo comes later.
+  await page.waitForFunction(() => document.body.dataset.lampsOf);
   const list = codes.map((code, i) => ({
     code,
     stage: "lights",

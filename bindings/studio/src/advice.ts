@@ -2,8 +2,9 @@
 
 /** The advice by the code of the warning; codes that are missing here keep the library's advice. */
 const ADVICE: Record<string, string> = {
-  FOCAL_ASSUMED: "Compare the sizes in Lamps with real lamps; if they are wrong, set Size by the length of a lamp",
-  VIEW_UNCERTAIN: "Tick Lines: if they do not follow the edges of the room, use a photo with more straight edges",
+  FOCAL_ASSUMED: "Drag the Grid onto a rectangle, or compare Lamps with real ones and set Size by the length of a lamp",
+  VIEW_UNCERTAIN:
+    "Tick Lines: if they do not follow the edges of the room, drag the Grid onto a rectangle of the ceiling",
   LENS_DISTORTION: "Use a photo of a longer lens, or straighten it in a photo program",
   NOT_SQUARE: "Tick Lines: if they follow the edges, the room is not square, and lamps may be a little skewed",
   LAYOUT_UNCERTAIN: "Paint a Not plane stroke on each wall and on the floor",

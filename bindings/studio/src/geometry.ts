@@ -8,6 +8,7 @@ export interface View {
   unwarped: [number, number] | null;
   to_photo: number[] | null; // from unwarped pixels to the photo's, row by row
   pixel_size: number; // of an unwarped pixel, as a share of the camera's distance from the plane
+  dragged: boolean; // the camera is that of the dragged grid
   distance: number | null; // of the camera from the plane, in metres
 }
 
@@ -21,7 +22,7 @@ const AXES = [
 const FAN = 1 / 6;
 const FINITE = 1e-9;
 
-function outlined(
+export function outlined(
   context: CanvasRenderingContext2D,
   path: Path2D,
   colour: string,
@@ -42,13 +43,13 @@ function outlined(
 /** For each axis of the room, lines that run to its vanishing point. */
 export function drawVanishing(
   context: CanvasRenderingContext2D,
-  view: View,
+  vanishing: [number, number, number][],
   [width, height]: [number, number],
   scale: number,
 ): void {
   const reach = 2 * Math.hypot(width, height);
   const step = FAN * width;
-  view.vanishing.forEach(([x, y, w], axis) => {
+  vanishing.forEach(([x, y, w], axis) => {
     const path = new Path2D();
     const through: [number, number][] = [];
     for (let at = step / 2; at < width; at += step) through.push([at, 0], [at, height]);

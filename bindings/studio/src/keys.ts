@@ -3,7 +3,7 @@
 import { make, showDialog } from "./dom";
 
 const KEYS: [string, string][] = [
-  ["1 2 3 4 5", "plane, not plane, light, not light, take out"],
+  ["1 2 3 4 5 6", "plane, not plane, light, not light, take out, grid"],
   ["[ and ]", "smaller and larger brush"],
   ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"],
   ["Ctrl+O", "open"],
@@ -12,6 +12,7 @@ const KEYS: [string, string][] = [
   ["Photo: arrow keys", "move the brush, with Shift in small steps"],
   ["Photo: Space", "start and end a stroke (Escape: no stroke)"],
   ["Photo: Enter", "a dot"],
+  ["Photo, Grid: arrow keys", "move a corner of the grid; Space: the next corner"],
   ["Photo: + and −", "zoom"],
   ["Room: arrow keys", "turn the view; with another tool, choose the ceiling, or shift, turn or size the lamps"],
   ["Room: + and −", "move the view"],

@@ -33,6 +33,9 @@ const STAGES: Record<string, string> = {
 /** Stages of the other tab; the last one ends its work. */
 const OF_STYLISE = new Set(["guides", "painting", ""]);
 
+/** What belongs to a photo and means nothing in another one. */
+const EMPTY_PHOTO = { strokes: [], removed: [], grid: null };
+
 /** What belongs to a room and means nothing in another one. */
 const EMPTY_ROOM = { surface: null, ...PLAIN_LAMPS, lux_plane: { surface: null, height: 0.75 }, camera: null };
 
@@ -94,6 +97,8 @@ export class Page {
     const { project } = this.store;
     this.photo.strokes = project.strokes;
     this.photo.removed = project.removed;
+    this.photo.setGrid(project.grid);
+    byId("grid-found").hidden = !project.grid;
     this.photo.redraw();
     this.lamps.setProject(project);
     this.lux.setProject(project.lux_plane);
@@ -121,6 +126,8 @@ export class Page {
       const place = at.map((x) => Math.round(10 * x) / 10) as [number, number];
       store.change(`remove ${store.project.removed.length}`, { removed: [...store.project.removed, place] });
     };
+    photo.grid.onChange = (grid) => store.change("grid", { grid });
+    byId("grid-found").onclick = () => store.change("grid found", { grid: null });
     room.onCamera = (camera) => store.change("camera", { camera });
     this.lamps.onZones = (zones) => store.change(`zones ${zones.length}`, { zones });
     this.lamps.onAdded = (added) => store.change(`added ${added.length}`, { added });
@@ -144,7 +151,7 @@ export class Page {
       photo.redraw();
     };
     const opener = new Opener({
-      photo: (file) => this.open({ ...store.project, photo: file, strokes: [], removed: [] }),
+      photo: (file) => this.open({ ...store.project, photo: file, ...EMPTY_PHOTO }),
       room: (file) => this.open({ ...store.project, ...EMPTY_ROOM, room: file }),
       project: (project) => this.open(project, true),
       demo: () => void this.openDemo(),
@@ -263,8 +270,8 @@ export class Page {
   /** What a stroke of the tool says, until the user has painted. */
   private hint(): void {
     const { tool, label, hint } = TOOLS.find((t) => t.tool === this.photo.tool)!;
-    byId("hint").textContent = tool === "remove" ? `${label}: click ${hint}` : `${label}: paint ${hint}`;
-    byId("hint").hidden = this.store.project.strokes.length > 0 && tool !== "remove";
+    byId("hint").textContent = `${label}: ${hint}`;
+    byId("hint").hidden = this.store.project.strokes.length > 0 && tool !== "remove" && tool !== "grid";
   }
 
   private open(project: Project, isWhole = false): void {
@@ -280,7 +287,7 @@ export class Page {
   private async openDemo(): Promise<void> {
     try {
       const start = await ask<Start>("start");
-      this.open({ ...this.store.project, photo: start.project.photo, strokes: [], removed: [] });
+      this.open({ ...this.store.project, photo: start.project.photo, ...EMPTY_PHOTO });
     } catch (problem) {
       notice(String(problem instanceof Problem ? problem.message : problem));
     }
@@ -437,7 +444,9 @@ export class Page {
 
   private takeView(message: Message): void {
     this.photo.view = { ...(message as any), distance: null };
-    this.photo.redraw();
+    this.photo.setGrid(this.store.project.grid);
+    document.body.dataset.grid = message.dragged ? "dragged" : "found";
+    document.body.dataset.vanishing = message.vanishing.flat().map((x: number) => x.toFixed(4)).join(" ");
   }
 
   private takeTexture(message: Message, payload: Uint8Array): void {

@@ -4,6 +4,7 @@ import { atNextFrame, byId } from "./dom";
 import { drawCross, drawMark, type Mark } from "./marks";
 import type { Kind, Stroke } from "./project";
 import { drawGrid, drawVanishing, type View } from "./geometry";
+import { Grid } from "./grid";
 import { drawStroke, lookOf, Pen, type Tool } from "./strokes";
 
 export interface Lamp {
@@ -23,6 +24,7 @@ export class PhotoView {
   private zoom = 1;
   private centre: [number, number] = [0.5, 0.5]; // of the photo, as shares
   private readonly pen = new Pen();
+  readonly grid = new Grid();
   private readonly pointers = new Map<number, [number, number]>();
   private cursor: [number, number] | null = null;
   private isKeyboard = false;
@@ -65,11 +67,18 @@ export class PhotoView {
   setPhoto(picture: HTMLCanvasElement, size: [number, number]): void {
     this.picture = picture;
     this.size = size;
-    this.masks = null;
+    this.masks = this.view = null;
+    this.grid.end(false);
     this.zoom = 1;
     this.centre = [0.5, 0.5];
     this.canvas.dataset.width = String(size[0]);
     this.canvas.dataset.height = String(size[1]);
+    this.redraw();
+  }
+
+  /** The grid as the project has it, or as the library has found it. */
+  setGrid(corners: number[] | null): void {
+    this.grid.set(corners, this.view, this.size);
     this.redraw();
   }
 
@@ -140,6 +149,7 @@ export class PhotoView {
     }
     const at = this.toPhoto(event);
     if (this.tool === "remove") this.onRemove(at);
+    else if (this.tool === "grid") this.grid.begin(at, this.place().scale, event.pointerType === "touch");
     else {
       this.pen.begin(this.tool as Kind, this.radius * pressure(event), ...at);
       this.onDraft(this.pen.stroke);
@@ -153,6 +163,7 @@ export class PhotoView {
     this.cursor = this.toPhoto(event);
     if (before) {
       if (this.pointers.size > 1) this.pinch(event, before);
+      else if (this.grid.isHeld) this.grid.drag(this.cursor, this.size);
       else if (this.pen.stroke) {
         let isNew = false;
         for (const e of event.getCoalescedEvents?.() ?? [event])
@@ -176,7 +187,9 @@ export class PhotoView {
 
   private up(event: PointerEvent, isCancelled = false): void {
     this.pointers.delete(event.pointerId);
+    this.grid.end(!isCancelled);
     if (this.pen.stroke) this.finish(!isCancelled);
+    this.redraw();
   }
 
   private leave(): void {
@@ -192,6 +205,7 @@ export class PhotoView {
   /** Ends a stroke: it counts, or it never was. */
   private finish(counts: boolean): void {
     this.isPenDown = false;
+    this.grid.end(counts);
     const stroke = this.pen.end();
     if (stroke && counts) this.onStroke(stroke);
     else if (stroke) this.onDraft(null);
@@ -210,7 +224,12 @@ export class PhotoView {
       ArrowDown: [0, step],
     };
     this.cursor ??= [this.size[0] / 2, this.size[1] / 2];
-    if (moves[event.key]) {
+    if (this.tool === "grid" && (moves[event.key] || event.key === " " || event.key === "Enter")) {
+      // A step is a fifth of the brush's: corners are set exactly.
+      const [dx, dy] = (moves[event.key] ?? [0, 0]).map((d) => d / 5);
+      if (moves[event.key]) this.grid.step(dx, dy, this.size);
+      else this.grid.next();
+    } else if (moves[event.key]) {
       this.cursor = [0, 1].map((i) => clamp(this.cursor![i] + moves[event.key][i], 0, this.size[i])) as [
         number,
         number,
@@ -249,6 +268,7 @@ export class PhotoView {
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);
     }
+    document.body.dataset.corners = this.grid.numbers.join(" ");
     const context = canvas.getContext("2d")!;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, canvas.width, canvas.height);
@@ -263,12 +283,14 @@ export class PhotoView {
     context.imageSmoothingQuality = "high";
     context.drawImage(this.picture, 0, 0, ...this.size);
     if (this.show.masks && this.masks) context.drawImage(this.masks, 0, 0, ...this.size);
-    if (this.show.lines && this.view) drawVanishing(context, this.view, this.size, scale);
-    if (this.show.grid && this.view) drawGrid(context, this.view, scale);
+    if (this.show.lines && this.view) drawVanishing(context, this.view.vanishing, this.size, scale);
+    const isGridTool = this.tool === "grid";
+    if (this.show.grid && this.view && !isGridTool) drawGrid(context, this.view, scale);
     for (const stroke of this.strokes) drawStroke(context, stroke, scale);
     if (this.pen.stroke) drawStroke(context, this.pen.stroke, scale);
     if (this.tool === "remove") this.drawLamps(context, scale);
     for (const at of this.removed) drawCross(context, at, 9 / scale);
+    if (isGridTool) this.grid.draw(context, this.size, scale, this.isKeyboard);
     context.restore();
     this.marks.forEach((mark) => drawMark(context, mark, scale));
     this.drawCursor(context, scale);
@@ -293,7 +315,7 @@ export class PhotoView {
   }
 
   private drawCursor(context: CanvasRenderingContext2D, scale: number): void {
-    if (!this.cursor || (this.isKeyboard && document.activeElement !== this.canvas)) return;
+    if (!this.cursor || this.tool === "grid" || (this.isKeyboard && document.activeElement !== this.canvas)) return;
     const radius = this.tool === "remove" ? 6 / scale : Math.max(this.radius, 2 / scale);
     for (const [colour, wide] of [
       ["#000", 3],

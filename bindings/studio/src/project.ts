@@ -41,6 +41,7 @@ export interface Project {
   room: FileName | null;
   strokes: Stroke[];
   removed: [number, number][];
+  grid: number[] | null; // x and y in the photo of the corners of a rectangle on the plane
   zones: [number, number, number, number][];
   surface: string | null;
   pattern: Pattern;
@@ -166,7 +167,10 @@ function forgetOldest(except: string): void {
 
 /** Whether a project has anything that would be a loss. */
 export function hasWork(project: Project): boolean {
-  return project.strokes.length + project.removed.length + project.zones.length + (project.added ?? []).length > 0;
+  return (
+    project.strokes.length + project.removed.length + project.zones.length + (project.added ?? []).length > 0 ||
+    Boolean(project.grid)
+  );
 }
 
 export function newSession(): string {

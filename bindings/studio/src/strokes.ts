@@ -2,7 +2,7 @@
 
 import type { Kind, Stroke } from "./project";
 
-export type Tool = Kind | "remove";
+export type Tool = Kind | "remove" | "grid";
 
 export interface ToolLook {
   tool: Tool;
@@ -14,17 +14,24 @@ export interface ToolLook {
 
 /** Colours by Okabe and Ito, which people with any colour vision tell apart. */
 export const TOOLS: ToolLook[] = [
-  { tool: "plane", label: "Plane", hint: "on the ceiling, or whatever carries the lamps", colour: "#56b4e9", dashes: [] },
-  { tool: "not-plane", label: "Not plane", hint: "on walls, floor and furniture", colour: "#d55e00", dashes: [7, 5] },
-  { tool: "light", label: "Light", hint: "on lamps that shine", colour: "#f0e442", dashes: [] },
+  { tool: "plane", label: "Plane", hint: "paint on the ceiling, or whatever carries the lamps", colour: "#56b4e9", dashes: [] },
+  { tool: "not-plane", label: "Not plane", hint: "paint on walls, floor and furniture", colour: "#d55e00", dashes: [7, 5] },
+  { tool: "light", label: "Light", hint: "paint on lamps that shine", colour: "#f0e442", dashes: [] },
   {
     tool: "not-light",
     label: "Not light",
-    hint: "on the ceiling beside the lamps",
+    hint: "paint on the ceiling beside the lamps",
     colour: "#cc79a7",
     dashes: [2, 5],
   },
-  { tool: "remove", label: "Take out", hint: "a lamp of the photo", colour: "#ffffff", dashes: [] },
+  { tool: "remove", label: "Take out", hint: "click a lamp of the photo", colour: "#ffffff", dashes: [] },
+  {
+    tool: "grid",
+    label: "Grid",
+    hint: "drag its corners onto a rectangle of the ceiling, such as tiles",
+    colour: "#ffffff",
+    dashes: [],
+  },
 ];
 
 export function lookOf(kind: Tool): ToolLook {

@@ -16,6 +16,7 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 | jobs | threads that do the newest work and cancel outdated work |
 | live | masks while strokes are painted, at a small size |
 | light | the steps from the photo to the lit room; a step runs only if its input has changed |
+| grid | the camera of the photo by the grid that the user has dragged |
 | mix | the factor of each kind of lamp |
 | measure | the plane on which the page shows the illuminance, and its numbers |
 | room | its corners, its work plane, the brightness of its pictures |

@@ -16,7 +16,7 @@ import luxfer
 import numpy as np
 
 from ..cli.plane import Plane
-from . import measure, mix, pictures
+from . import grid, measure, mix, pictures
 from .jobs import Latest
 from .live import strokes_of
 from .project import Project
@@ -65,6 +65,9 @@ class Light:
         self.desks: dict[str, Any] = {}
         self.planned: dict[str, Any] = {}
         self.is_replaced = False  # whether the mask of the lights is not the library's own
+        self.is_dragged = False  # whether the camera of the photo is that of the dragged grid
+        #: Directions of the room axes and focal length of the dragged grid.
+        self.camera_by_grid: tuple[list[list[float]], float] | None = None
         self.lights: luxfer.Image | None = None
         self.render: luxfer.Render | None = None
         #: For each step that files need, the project object to which its result belongs.
@@ -78,7 +81,7 @@ class Light:
         shot = [project["camera"], size]
         self.step("view", [], self.find_view)
         self.step("masks", project["strokes"], lambda: self.make_masks(project))
-        self.step("unwarp", project["removed"], lambda: self.unwarp(project))
+        self.step("unwarp", [project["removed"], project["grid"]], lambda: self.unwarp(project))
         self.step("emission", pattern, lambda: self.make_texture(project, surface))
         self.step("relight", [], lambda: self.relight(project))
         self.step("expose", [], lambda: self.choose_exposure(surface))
@@ -122,17 +125,20 @@ class Light:
         self.transfer.set_strokes(strokes_of(self.context, project, self.photo.size[:2]))
         self.lights = None
         try:
-            self.stage("features", "lights")
+            self.find_masks()
         finally:
             self.send_warnings()
         self.lights = self.transfer.image("lights-mask")
-        self.is_replaced = False
+
+    def find_masks(self) -> None:
+        """Computes the masks. They always follow the camera that the library has found."""
+        self.stage("view" if self.is_dragged else "features", "lights")
+        self.is_dragged = self.is_replaced = False
 
     def unwarp(self, project: Project) -> None:
         assert self.lights is not None
-        if self.is_replaced and not project["removed"]:
-            self.stage("features", "lights")
-            self.is_replaced = False
+        if (self.is_replaced and not project["removed"]) or self.is_dragged:
+            self.find_masks()
         mask = self.lights.numpy()[..., 0]
         if project["removed"]:
             mask = pictures.without(mask, project["removed"], REACH * mask.shape[1])
@@ -142,10 +148,22 @@ class Light:
             self.is_replaced = True
         self.send_masks(mask)
         try:
-            self.stage("unwarp", "unwarp")
+            self.stage("unwarp", "unwarp", **self.plane_of(project))
         finally:
-            self.send_view()
+            self.send_view(project)
             self.send_warnings()
+
+    def plane_of(self, project: Project) -> dict[str, Any]:
+        """Replaces the camera by that of the dragged grid, and returns the settings of the stage "unwarp"."""
+        self.camera_by_grid = None
+        if not project["grid"]:
+            return {}
+        size = self.photo.size[:2]
+        axes, focal = grid.camera_of(project["grid"], size, self.transfer.view.focal)
+        plane_axes = grid.use(self.transfer, axes.tolist(), focal, size)
+        self.is_dragged = True
+        self.camera_by_grid = axes.tolist(), focal
+        return {"rectify": {"plane_axes": plane_axes}}
 
     def send_masks(self, lights: np.ndarray[Any, Any]) -> None:
         """Sends the masks at full size, and the lamps of the photo."""
@@ -161,7 +179,7 @@ class Light:
         }
         self.send("masks", plane_bits + pictures.bits(lamps)[1], **header)
 
-    def send_view(self) -> None:
+    def send_view(self, project: Project) -> None:
         """Sends the vanishing points and, once the plane has been unwarped, its rectangle."""
         view = self.transfer.view
         width, height, _ = self.transfer.image("unwarped").size if view.is_unwarped else (0, 0, 0)
@@ -171,6 +189,7 @@ class Light:
             support=view.vanishing_support,
             errors=view.vanishing_errors,
             focal=view.focal,
+            dragged=self.is_dragged,
             unwarped=[width, height] if view.is_unwarped else None,
             to_photo=view.to_photo if view.is_unwarped else None,
             pixel_size=view.pixel_size,

@@ -81,6 +81,8 @@ static luxfer_image *image_of(float *pixels, uint32_t width, uint32_t height, ui
     return image;
 }
 
+/* [end pixels] */
+/* [start read] */
 /* Returns a copy of the pixels of an image, which the caller frees. */
 static float *pixels_of(luxfer_image *image, uint32_t *width, uint32_t *height, uint32_t *channels) {
     luxfer_image_view view;
@@ -91,7 +93,7 @@ static float *pixels_of(luxfer_image *image, uint32_t *width, uint32_t *height, 
     check(luxfer_image_read(image, 0, &view), "image");
     return pixels;
 }
-/* [end pixels] */
+/* [end read] */
 /* [start regions] */
 
 /* Writes the number `label` on the region of pixels that are 1 in `is_lit`, joined by their sides, around `start`. */
@@ -158,6 +160,92 @@ static void take_out(luxfer_transfer *transfer) {
     luxfer_release(changed), luxfer_release(mask);
 }
 /* [end removed] */
+/* [start grid] */
+
+/* Draws a line in a cell of a picture, along (dx, dy) through the middle of the cell; `side` is the cell's length. */
+static void draw_line(float *pixels, uint32_t width, const uint32_t box[4], const double middle[2], double dx,
+                      double dy, double side) {
+    uint32_t x, y, c;
+    for (y = box[1]; y < box[3]; y++)
+        for (x = box[0]; x < box[2]; x++) {
+            const double px = x + 0.5 - middle[0], py = y + 0.5 - middle[1];
+            const double along = (px * dx + py * dy) / (half_length * side), across = (py * dx - px * dy) / half_width;
+            const double near_line = fmax(0, 1 - across * across), inside = fmax(0, 1 - along * along);
+            for (c = 0; c < 3; c++)
+                pixels[3 * ((size_t)y * width + x) + c] =
+                    (float)(0.5 + contrast * across * near_line * near_line * inside);
+        }
+}
+
+/* Draws lines to the vanishing points of the room axes, one in each cell: the library finds cameras from lines. */
+static luxfer_image *draw(uint32_t width, uint32_t height) {
+    const uint32_t longer = width > height ? width : height;
+    const uint32_t cells = longer / cell < min_cells   ? min_cells
+                           : longer / cell > max_cells ? max_cells
+                                                       : longer / cell;
+    const double side = (double)longer / cells;
+    const uint32_t columns = (uint32_t)fmax(1, floor(width / side + 0.5));
+    const uint32_t rows = (uint32_t)fmax(1, floor(height / side + 0.5));
+    float *pixels = (float *)allocate(3 * (size_t)width * height, sizeof(float));
+    luxfer_image *image;
+    uint32_t i, j;
+    size_t k;
+    for (k = 0; k < 3 * (size_t)width * height; k++) pixels[k] = 0.5f;
+    for (j = 0; j < rows; j++)
+        for (i = 0; i < columns; i++) {
+            const double middle[2] = {(i + 0.5) * width / columns, (j + 0.5) * height / rows};
+            const double *axis = photo_axes[(i + j) % 3];
+            const double dx = photo_focal * axis[0] + (width / 2.0 - middle[0]) * axis[2];
+            const double dy = photo_focal * axis[1] + (height / 2.0 - middle[1]) * axis[2];
+            const double length = sqrt(dx * dx + dy * dy);
+            const uint32_t box[4] = {i * width / columns, j * height / rows, (i + 1) * width / columns,
+                                     (j + 1) * height / rows};
+            if (length <= side * fabs(axis[2])) continue; /* lines near a vanishing point run in all directions */
+            draw_line(pixels, width, box, middle, dx / length, dy / length, side);
+        }
+    image = image_of(pixels, width, height, 3);
+    free(pixels);
+    return image;
+}
+
+/* Returns the index of the room axis of a camera that is nearest to a direction. */
+static int32_t nearest_axis(const luxfer_rectify_report *found, const double direction[3]) {
+    double largest = -1;
+    int32_t i, out = 0;
+    for (i = 0; i < 3; i++) {
+        const double *axis = found->axes[i];
+        const double alike = fabs(axis[0] * direction[0] + axis[1] * direction[1] + axis[2] * direction[2]);
+        if (alike <= largest) continue;
+        largest = alike;
+        out = i;
+    }
+    return out;
+}
+
+/* Replaces the camera of the photo, and sets the axes that the plane spans. */
+static void use_grid(luxfer_transfer *transfer, luxfer_image *photo, luxfer_rectify_params *plane) {
+    luxfer_rectify *rectify = NULL;
+    luxfer_rectify_params params;
+    luxfer_rectify_report found;
+    luxfer_image *drawing;
+    luxfer_job *job = NULL;
+    uint32_t width = 0, height = 0;
+    check(luxfer_image_get_size(photo, &width, &height, NULL), "photo");
+    drawing = draw(width, height);
+    check(luxfer_rectify_params_init(&params, sizeof params), "grid");
+    params.focal = photo_focal;
+    check(luxfer_rectify_create(context, &rectify), "grid");
+    check(luxfer_rectify_set_photo(rectify, drawing), "grid");
+    check(luxfer_rectify_start(rectify, &params, &job), "grid");
+    finish(job, "grid");
+    check(luxfer_rectify_get_report(rectify, &found, sizeof found), "grid");
+    check(luxfer_transfer_use_rectify(transfer, rectify), "grid");
+    check(luxfer_rectify_params_init(plane, sizeof *plane), "grid");
+    plane->plane_axes[0] = nearest_axis(&found, photo_axes[0]);
+    plane->plane_axes[1] = nearest_axis(&found, photo_axes[1]);
+    luxfer_release(rectify), luxfer_release(drawing);
+}
+/* [end grid] */
 /* [start mix] */
 
 /* The emissive texture of the lit room, its lit regions, and how the surface maps to it. */
@@ -442,20 +530,28 @@ static void write_results(luxfer_transfer *transfer, luxfer_scene *room) {
 }
 
 /* Makes the texture of the surface from the photo, and solves for its strength. */
-static void transfer_light(luxfer_transfer *transfer) {
+static void transfer_light(luxfer_transfer *transfer, luxfer_image *photo) {
     luxfer_transfer_params params;
     luxfer_pattern_params pattern;
     luxfer_relight_params relight;
+    /* [start grid] */
+    luxfer_rectify_params plane;
+    /* [end grid] */
     check(luxfer_transfer_params_init(&params, sizeof params), "settings");
     check(luxfer_pattern_params_init(&pattern, sizeof pattern), "settings");
     check(luxfer_relight_params_init(&relight, sizeof relight), "settings");
     /* [settings] */
     params.pattern = &pattern;
     params.relight = &relight;
+    (void)photo;
     run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_LIGHTS, NULL, "masks");
     /* [start removed] */
     take_out(transfer);
     /* [end removed] */
+    /* [start grid] */
+    use_grid(transfer, photo, &plane);
+    params.rectify = &plane;
+    /* [end grid] */
     check(luxfer_transfer_set_zones(transfer, zones[0], zone_count), "zones");
     run(transfer, LUXFER_STAGE_UNWARP, LUXFER_STAGE_RELIGHT, &params, "light");
 }
@@ -473,7 +569,7 @@ int main(int argc, char **argv) {
     check(luxfer_transfer_set_photo(transfer, photo), "photo");
     check(luxfer_transfer_set_scene(transfer, room, surface_name), "surface");
     set_strokes(transfer, photo);
-    transfer_light(transfer);
+    transfer_light(transfer, photo);
     write_results(transfer, room);
     luxfer_release(transfer), luxfer_release(room), luxfer_release(photo), luxfer_release(context);
     return 0;

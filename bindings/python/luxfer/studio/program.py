@@ -42,6 +42,14 @@ mask = transfer.image("lights-mask").numpy()[..., 0]
 transfer.use_mask("lights", without(mask, {removed}, {reach} * mask.shape[1]))
 """
 
+GRID = """
+# The camera by the grid that was dragged: directions of the room axes, the first two along the plane, and the focal
+# length in pixels.
+from luxfer.studio import grid
+
+plane = {{"plane_axes": grid.use(transfer, {axes}, {focal!r}, photo.size[:2])}}
+"""
+
 #: The lit room and its schedule, as they are and with lamps that are dimmed or added.
 PLAIN = 'transfer.scene("lit")', 'transfer.save_fixtures("luminaires.csv")'
 MIXED = "mix.apply(transfer, *lamps)", 'mix.write_schedule(Path("luminaires.csv"), transfer, *lamps)'
@@ -57,7 +65,7 @@ lamps = (room.find_surface(surface), {mix}, {added})
 TAIL = """
 # The pattern on the surface, and places without lamps: u0, v0, u1, v1 in metres.
 transfer.set_zones({zones})
-transfer.run("unwarp", "emission", **{texture})
+transfer.run("unwarp", "emission", {plane}**{texture})
 transfer.run("relight", "relight", white_luminance={white}, relight={relight})
 lit = {lit}
 
@@ -74,9 +82,20 @@ render.image("preview").save("render.png", {exposure})
 """
 
 
-def program(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:
+#: Directions of the room axes of the photo, the first two along the plane, and focal length in pixels.
+PhotoCamera = tuple[list[list[float]], float]
+
+
+def program(
+    project: Project,
+    size: tuple[int, int],
+    surface: str,
+    camera: dict[str, Any],
+    exposure: float,
+    by_grid: PhotoCamera | None = None,
+) -> str:
     """Returns the text of the program. Surface, camera and exposure are the values chosen by the studio, for a project
-    that does not state them."""
+    that does not state them; `by_grid` is the camera of the photo by the dragged grid, if it was dragged."""
     strokes = []
     for stroke in project["strokes"]:
         phase, positive = PHASES[stroke["kind"]]
@@ -90,6 +109,8 @@ def program(project: Project, size: tuple[int, int], surface: str, camera: dict[
     )
     if project["removed"]:
         out += REMOVED.format(removed=project["removed"], reach=REACH)
+    if by_grid:
+        out += GRID.format(axes=by_grid[0], focal=by_grid[1])
     is_plain = mix.is_plain(project["mix"], project["added"])
     if not is_plain:
         out += MIX_HEAD.format(mix=project["mix"], added=project["added"])
@@ -97,6 +118,7 @@ def program(project: Project, size: tuple[int, int], surface: str, camera: dict[
     fixtures = "transfer.fixtures" if is_plain else "(lamp for lamp, _ in mix.lamps(transfer.fixtures, *lamps))"
     return out + TAIL.format(
         zones=project["zones"],
+        plane="rectify=plane, " if by_grid else "",
         texture=texture_settings(project),
         white=project["white"],
         relight=RELIGHT,

@@ -12,9 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from . import mix
+from . import grid, mix
 from .light import REACH, RELIGHT
 from .live import PHASES
+from .program import PhotoCamera
 from .project import Project
 from .room import texture_settings
 
@@ -75,7 +76,14 @@ def strokes_of(project: Project) -> str:
     )
 
 
-def data_of(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:
+def data_of(
+    project: Project,
+    size: tuple[int, int],
+    surface: str,
+    camera: dict[str, Any],
+    exposure: float,
+    by_grid: PhotoCamera | None,
+) -> str:
     """Returns the values of a project as C."""
     room = project["room"]["name"] if project["room"] else ""
     out = [
@@ -88,9 +96,20 @@ def data_of(project: Project, size: tuple[int, int], surface: str, camera: dict[
     ]
     if project["removed"]:
         out += [
-            "\n/* A pixel on each lamp of the photo that was taken out; it may miss the lamp by this share of the width. */\n",
+            "\n/* A pixel on each lamp of the photo that was taken out; it may miss it by a share of the width. */\n",
             array("double", "removed_lamp", [numbers(place) for place in project["removed"]], "{0, 0}", "[2]"),
             f"static const double reach = {REACH!r};\n",
+        ]
+    if by_grid:
+        out += [
+            "\n/* The camera of the photo by the dragged grid: directions of the room axes, the first two along the\n"
+            " * plane, and the focal length in pixels. */\n",
+            f"static const double photo_axes[3][3] = {{{', '.join(numbers(axis) for axis in by_grid[0])}}};\n",
+            f"static const double photo_focal = {by_grid[1]!r};\n",
+            "/* Its drawing: the least side of a cell and the bounds of their number, and the lines. */\n",
+            f"static const uint32_t cell = {grid.CELL}, min_cells = {grid.MIN_CELLS}, max_cells = {grid.MAX_CELLS};\n",
+            f"static const double half_width = {grid.HALF_WIDTH}, half_length = {grid.HALF_LENGTH};\n",
+            f"static const double contrast = {grid.CONTRAST};\n",
         ]
     if mix.is_plain(project["mix"], project["added"]):
         out.append("static const size_t added_lamp_count = 0;\n")
@@ -135,19 +154,27 @@ def settings_of(project: Project) -> str:
     return assignments("params", texture) + assignments("pattern", pattern) + assignments("relight", RELIGHT)
 
 
-def program(project: Project, size: tuple[int, int], surface: str, camera: dict[str, Any], exposure: float) -> str:
+def program(
+    project: Project,
+    size: tuple[int, int],
+    surface: str,
+    camera: dict[str, Any],
+    exposure: float,
+    by_grid: PhotoCamera | None = None,
+) -> str:
     """Returns the text of the program, from the arguments of program.program."""
     is_plain = mix.is_plain(project["mix"], project["added"])
-    is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain}
+    is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain, "grid": bool(by_grid)}
     is_needed["regions"] = is_needed["removed"] or is_needed["mix"]
-    is_needed["pixels"] = is_needed["regions"]
+    is_needed["pixels"] = is_needed["regions"] or is_needed["grid"]
+    is_needed["read"] = is_needed["regions"]
     text = SOURCE.read_text(encoding="utf-8")
     for name, is_kept in is_needed.items():
         part = rf" */\* \[start {name}\] \*/\n(.*?) */\* \[end {name}\] \*/\n"
         text = re.sub(part, r"\1" if is_kept else "", text, flags=re.DOTALL)
     render = (project["plan"] or {"render": {"target_error": project["noise"]}})["render"]
     for mark, body in (
-        ("/* [data] */\n", data_of(project, size, surface, camera, exposure)),
+        ("/* [data] */\n", data_of(project, size, surface, camera, exposure, by_grid)),
         ("    /* [settings] */\n", settings_of(project)),
         ("    /* [render] */\n", assignments("params", render)),
     ):

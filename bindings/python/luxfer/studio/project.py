@@ -24,6 +24,7 @@ DEFAULTS: Project = {
     "room": None,  # {"name", "sha256"}; None: the generated room
     "strokes": [],  # {"kind", "radius", "points": [x, y, x, y, ...]} in pixels of the photo
     "removed": [],  # [x, y] in the photo, on each lamp that was taken out of the mask
+    "grid": None,  # x, y in the photo of the corners of a rectangle on the plane, in turn; None: found by the library
     "zones": [],  # [u0, v0, u1, v1] in metres on the surface, on each lamp that was taken out of the room
     "surface": None,  # name of the surface that receives the lights; None: the likeliest ceiling
     "pattern": {"scale": "distance", "length": 1.2, "rotation": 0.0, "offset": [0.0, 0.0], "keep_whole": False},
@@ -145,6 +146,7 @@ FIELDS = {
     "room": optional(FILE),
     "strokes": many(record(kind=one_of(KINDS), radius=number(1e-3, 4096), points=many(PIXEL)), max_count=5000),
     "removed": many(many(PIXEL, 2), max_count=5000),
+    "grid": optional(many(PIXEL, 8)),
     "zones": many(many(METRE, 4), max_count=5000),
     "surface": optional(text),
     "pattern": record(

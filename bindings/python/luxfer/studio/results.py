@@ -78,7 +78,7 @@ def _text(path: Path, text: str) -> None:
 def _program(path: Path, wanted: Wanted, light: Light, written: Callable[..., str]) -> None:
     surface = wanted.project["surface"] or light.surface
     camera = light.camera(wanted.project)
-    _text(path, written(wanted.project, wanted.size, surface, camera, light.exposure))
+    _text(path, written(wanted.project, wanted.size, surface, camera, light.exposure, light.camera_by_grid))
 
 
 def _usd(path: Path, wanted: Wanted, light: Light) -> None:
