@@ -184,7 +184,7 @@ class Door(Case):
             ("notes.txt", b"hello", "is no photo"),
             ("IMG_1.HEIC", b"x", "save it as JPEG"),
             ("room.fbx", b"x", "export it as .glb"),
-            ("room.usdz", b"x", "import it into Blender"),
+            ("room.usdz", b"x", "room.usdz cannot be read: USD needs one more package"),
             ("photo.jpg", b"", "is empty"),
         ):
             status, _, answer = self.server.get(f"{self.server.token}/files?name={name}", content)

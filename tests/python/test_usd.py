@@ -205,6 +205,34 @@ class Files(unittest.TestCase):
         brightest = max(again.material(i)["emission"][0] for i in range(again.counts.materials))
         self.assertAlmostEqual(brightest, 300, places=2)
 
+    def test_the_studio_reads_a_room_in_usd(self):
+        from luxfer.studio import files, rooms, security
+
+        room = luxfer.Scene.demo(self.context, "target-room")
+        luxfer.usd.save(room, self.folder / "room.usdz")
+        name, data = rooms.given(self.context, "my room.usdz", (self.folder / "room.usdz").read_bytes())
+        self.assertEqual(name, "my room.glb")
+        read = luxfer.Scene.from_bytes(self.context, data)
+        self.assertEqual(read.counts.triangles, room.counts.triangles)
+        self.assertEqual(read.candidates[0].name, "Ceiling")
+        # A project names rooms by hash, so a room that is given again is the same one.
+        self.assertEqual(rooms.given(self.context, "b.usdz", (self.folder / "room.usdz").read_bytes())[1], data)
+        # On disk, a file may refer to others, but only to those in its folder.
+        luxfer.usd.save(room, self.folder / "inside.usdc")
+        kept = files.Files(self.folder / "state", security.Allowed([self.folder]))
+        for folder, is_good in ((self.folder, True), (self.folder / "deeper", False)):
+            folder.mkdir(exist_ok=True)
+            path = folder / "whole.usda"
+            path.write_text(f"#usda 1.0\n(subLayers = [@{self.folder / 'inside.usdc'}@])\n")
+            if is_good:
+                known = rooms.opened(self.context, kept, kept.open(path))
+                self.assertEqual((known.name, known.path.parent), ("whole.glb", self.folder / "state" / "files"))
+            else:
+                with self.assertRaisesRegex(ValueError, "inside.usdc, which lies outside"):
+                    rooms.opened(self.context, kept, kept.open(path))
+        with self.assertRaisesRegex(ValueError, "no USD file"):
+            rooms.given(self.context, "room.usda", b"#usda nothing")
+
     def test_what_is_wrong_is_an_error(self):
         stage = self.stage()
         self.square(stage, "/Broken", FaceVertexIndices=[0, 1, 2, 9])

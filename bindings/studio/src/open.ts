@@ -50,7 +50,7 @@ export class Opener {
       type: "file",
       multiple: true,
       id: "files",
-      accept: ".jpg,.jpeg,.png,.webp,.tif,.tiff,.bmp,.gif,.hdr,.exr,.glb,.gltf,.json",
+      accept: ".jpg,.jpeg,.png,.webp,.tif,.tiff,.bmp,.gif,.hdr,.exr,.glb,.gltf,.usd,.usda,.usdc,.usdz,.json",
     });
     input.onchange = () => {
       for (const file of input.files ?? []) void this.take(file);
@@ -59,7 +59,7 @@ export class Opener {
     const close = () => byId<HTMLDialogElement>("dialog").close();
     showDialog(
       "Open",
-      make("p", {}, "A photo, a room (glTF) or a project of the studio. You can also drop files on the page."),
+      make("p", {}, "A photo, a room (glTF or USD) or a project of the studio. You can also drop files on the page."),
       make("label", { class: "file" }, "Choose files ", input),
       make(
         "p",

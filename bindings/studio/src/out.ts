@@ -11,6 +11,7 @@ const KINDS: [string, string, string][] = [
   ["csv", "Lamps (CSV)", "the schedule: place in metres, size, cd/m², lumens, kelvin"],
   ["json", "Lamps (JSON)", "the schedule with the outlines of the lamps"],
   ["photometry", "IES and LDT", "a zip with both files for each kind of lamp"],
+  ["room", "Unlit room (GLB)", "as the programs read it, also if it was opened as USD"],
   ["project", "Project (JSON)", "opens here again with the same result"],
   ["program", "Program (Python)", "does the same without the studio"],
   ["program-c", "Program (C)", "the same in C, which is C++ too"],

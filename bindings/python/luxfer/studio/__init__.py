@@ -20,6 +20,7 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 | mix | the factor of each kind of lamp |
 | measure | the plane on which the page shows the illuminance, and its numbers |
 | room | its corners, its work plane, the brightness of its pictures |
+| rooms | rooms in USD, as GLB |
 | painting | the stylisation: the artwork on the ball, the painted picture, the sheet |
 | pictures | images as bytes for the page |
 | project | the entries of a project and their checks |

@@ -26,6 +26,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from ..cli.exits import Exit
 from . import project as projects
+from . import rooms
 from .files import MAX_UPLOAD, Files, Known, state_folder
 from .opening import Opening
 from .outbox import Outbox
@@ -38,7 +39,7 @@ MAX_SESSIONS = 8
 #: Maximum size of a project file in bytes: 16 MiB hold over a million points of strokes. [convention]
 MAX_PROJECT = 16 << 20
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
-ROOMS = {".glb", ".gltf"}
+ROOMS = rooms.GLTF | rooms.USD
 #: What to do about a file of another kind, by the ending of its name.
 CONVERSIONS = {
     ending: what
@@ -49,7 +50,6 @@ CONVERSIONS = {
             ".blend .fbx .obj .skp .3ds .max .dae .stl .ifc .rvt",
             ": export it as .glb from the program that made it",
         ),
-        (".usd .usda .usdc .usdz", ": import it into Blender and export it as .glb"),
     )
     for ending in endings.split()
 }
@@ -116,19 +116,21 @@ class Studio:
         suffix = Path(name).suffix.lower()
         if suffix not in PHOTOS | ROOMS:
             return problem(
-                f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (glTF: .glb, .gltf)"
+                f"{name} is no photo (JPEG, PNG, WebP, TIFF, BMP, GIF, HDR, EXR) and no room (.glb, .gltf, USD)"
                 f"{CONVERSIONS.get(suffix, '')}"
             )
         try:
-            await run_in_threadpool(self.try_file, data, suffix)
-        except luxfer.Error as error:
+            name, data = await run_in_threadpool(rooms.given, self.context, name, data)
+            await run_in_threadpool(self.try_file, data, Path(name).suffix.lower())
+        except (luxfer.Error, ValueError) as error:
             return problem(f"{name} cannot be read: {error}")
         known = await run_in_threadpool(self.files.upload, name, data)
         return JSONResponse({"name": known.name, "sha256": known.sha256, "is_room": suffix in ROOMS})
 
     def try_known(self, known: Known, data: bytes) -> None:
-        """As try_file, for a file on disk, which may name files in its folder."""
-        self.try_file(data, known.path.suffix.lower(), known.path.parent)
+        """As try_file, for a file on disk, which may name files in its folder. USD is read when it is converted."""
+        if not rooms.is_usd(known.name):
+            self.try_file(data, known.path.suffix.lower(), known.path.parent)
 
     def try_file(self, data: bytes, suffix: str, folder: Path | None = None) -> None:
         """Reads a file by the library, and raises its error if that fails."""
@@ -145,7 +147,8 @@ class Studio:
         if wanted := request.query_params.get("open"):
             try:
                 known = await run_in_threadpool(self.files.open, Path(wanted), self.try_known)
-            except (OSError, luxfer.Error) as error:
+                known = await run_in_threadpool(rooms.opened, self.context, self.files, known)
+            except (OSError, ValueError, luxfer.Error) as error:
                 return problem(str(error), 403 if isinstance(error, PermissionError) else 400)
             return JSONResponse(
                 {"name": known.name, "sha256": known.sha256, "is_room": known.path.suffix.lower() in ROOMS}
@@ -286,6 +289,15 @@ def problem(message: str, status: int = 400) -> Response:
     return JSONResponse({"message": message}, status)
 
 
+def convert(files: Files, known: Known) -> Known:
+    """Converts a room in USD that the command line names."""
+    try:
+        with luxfer.Context() as context:
+            return rooms.opened(context, files, known)
+    except (ValueError, luxfer.Error) as error:
+        raise projects.Invalid(f"{known.name} cannot be read: {error}") from None
+
+
 def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Project | None, Path | None]:
     """Returns the project that the command line names, and the file in which it is saved."""
     project: projects.Project | None = None
@@ -305,6 +317,8 @@ def first_project(asked: argparse.Namespace, files: Files) -> tuple[projects.Pro
                 raise FileNotFoundError(f"there is no file {path}")
             files.allowed.add(path)
             known = files.open(path)
+            if rooms.is_usd(known.name):
+                known = convert(files, known)
             project = {**(project or projects.DEFAULTS), entry: {"name": known.name, "sha256": known.sha256}}
     return project, kept.resolve() if kept is not None else None
 

@@ -38,7 +38,7 @@ def parser() -> argparse.ArgumentParser:
     out.add_argument(
         "photo", nargs="?", type=Path, help="a photo, or a project file (.json); default: a generated office"
     )
-    out.add_argument("scene", nargs="?", type=Path, help="a room, .glb or .gltf; default: a generated one")
+    out.add_argument("scene", nargs="?", type=Path, help="a room, .glb, .gltf or USD; default: a generated one")
     out.add_argument(
         "--project", type=Path, help="the file that the project is kept in as you work; opened if it is there"
     )

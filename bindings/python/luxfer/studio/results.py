@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 #: The endings of the files of results.
 ENDINGS = {
     "glb": "glb",
+    "room": "room.glb",
     "usd": "usdz",
     "exr": "exr",
     "png": "png",
@@ -47,7 +48,7 @@ NEEDS = {
 
 def check_ready(kind: str, wanted: Wanted, light: Light) -> None:
     """Raises NotReady if the results for a file are missing or belong to an older state of the project. A project file
-    needs no results."""
+    and the unlit room need no results."""
     if kind not in ENDINGS:
         raise LookupError(f"there is no result {kind}")
     if kind in NEEDS and light.done.get(NEEDS[kind]) is not wanted.project:
@@ -58,6 +59,7 @@ def write(kind: str, path: Path, wanted: Wanted, light: Light) -> None:
     """Writes one file of results."""
     writers: dict[str, Callable[[Path, Wanted, Light], None]] = {
         "glb": lambda path, wanted, light: light.lit.export(path),
+        "room": lambda path, wanted, light: light.room.export(path),
         "usd": _usd,
         "exr": _exr,
         "png": _png,
