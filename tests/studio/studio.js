@@ -152,6 +152,15 @@ export async function picture(page, name) {
   await page.screenshot({ path: join(PICTURES, `${name}.png`) });
 }
 
+/** Counts what a user does from now on: clicks, and keys outside of text. */
+export async function countActions(page) {
+  await page.evaluate(() => {
+    window.actions = { clicks: 0, keys: 0 };
+    addEventListener("pointerdown", () => window.actions.clicks++, true);
+    addEventListener("keydown", () => window.actions.keys++, true);
+  });
+}
+
 /** Strokes on the generated photo: what they mark, and places as shares of its size. */
 export const STROKES = [
   ["plane", [0.15, 0.25], [0.4, 0.14]],
