@@ -16,7 +16,7 @@
 //! 5. [`compose`] plans the positions of lamps and patches, renders the texels from the photo at full resolution, and
 //!    lists the lamps.
 //! 6. [`agreement`] compares the texture's statistics with the exemplar's, and estimates which part of the difference
-//!    is sampling error.
+//!    is sampling error. If the difference exceeds that of a texture without light, [`other_laws`] tries other laws.
 //!
 //! A texture that fits inside the exemplar is copied from it, unless it is to be tileable or centred. Another exception
 //! is an exemplar whose lamps have ragged outlines and lie on a lattice: such lamps are placed and drawn anew.
@@ -41,6 +41,7 @@ mod exemplar;
 mod lamps;
 mod lattice;
 mod measure;
+mod other_laws;
 mod output;
 mod params;
 mod quilt;
@@ -70,6 +71,7 @@ use crate::image::Image;
 use crate::job::Job;
 use agreement::sampling;
 use agreement::statistics::{Pattern, Statistics};
+use analysis::Analysis;
 use compose::layer::Layer;
 use compose::render;
 use exemplar::Exemplar;
@@ -110,6 +112,7 @@ pub fn from_texture(texture: &Image, job: Job) -> Result<Emission> {
         choice: Choice::only(Law::Copy),
         statistics: [statistics; 2],
         error: 0.0,
+        first_error: None,
         sampling_error: 0.0,
         exemplar_lamps,
     })
@@ -128,7 +131,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
 ///
 /// Errors: as for [`run`]; weights that are not in `[0, 1]`, or add up to more than 1.
 pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Emission> {
-    make(Composition::new(input, styles, params, job.part(0.0, 0.85))?, input, styles, params, job)
+    blend_analysed(None, input, styles, params, job)
 }
 
 /// Like [`blend`], but reuses the analysis of the first exemplar that [`measure`] has made. Repeats the analysis only
@@ -140,8 +143,25 @@ pub fn blend_measured(
     params: &Params,
     job: Job,
 ) -> Result<Emission> {
-    let composition = Composition::of(Some(measured.analysis), input, styles, params, job.part(0.0, 0.85))?;
-    make(composition, input, styles, params, job)
+    blend_analysed(Some(measured.analysis), input, styles, params, job)
+}
+
+fn blend_analysed(
+    analysis: Option<Analysis>,
+    input: &Input,
+    styles: &[Style],
+    params: &Params,
+    job: Job,
+) -> Result<Emission> {
+    let first_job = job.part(0.0, 0.95);
+    let composition = Composition::of(analysis, input, styles, params, first_job.part(0.0, 0.85))?;
+    let first = make(composition, input, styles, params, first_job)?;
+    let emission = match styles {
+        [] => other_laws::try_other_laws(first, input, params, job.part(0.95, 1.0))?,
+        _ => first,
+    };
+    job.report(1.0);
+    Ok(emission)
 }
 
 /// Makes each lamp of the unwarped light mask one piece. If the mask shows a luminous ceiling, removes the bars between
@@ -191,6 +211,7 @@ fn make(mut composition: Composition, input: &Input, styles: &[Style], params: &
         choice,
         statistics,
         error,
+        first_error: None,
         sampling_error,
         exemplar_lamps,
     })

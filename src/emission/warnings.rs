@@ -11,7 +11,7 @@ const MAX_ERROR: f64 = 0.25;
 const MAX_FREE_ERROR: f64 = 0.15;
 /// [`Emission::error`] of a texture without any light, whose lit share differs from the photo's by 100 %. If the error
 /// is larger, the warning says that there is no pattern. [convention]
-const UNLIT_ERROR: f64 = 1.0;
+pub(super) const UNLIT_ERROR: f64 = 1.0;
 /// If the exemplars show fewer whole lamps than this, a warning says that they are too few for measuring size and
 /// spacing. [convention]
 const MIN_LAMPS: usize = 2;
@@ -34,15 +34,23 @@ impl Emission {
     }
 
     fn uncertain(&self) -> Option<Warning> {
-        let difference = || {
-            let parts = "the lit share, the size or the spacing of its lamps";
-            format!("the texture differs from the photo by {} in {parts}", percent(self.error))
-        };
-        if self.error > UNLIT_ERROR {
-            let message = format!("{}, more than a texture without light does", difference());
-            let advice = "do not use the texture: if the lamps hang or lie on several planes, the photo has no pattern to copy; \
-                          otherwise paint more strokes where the masks are wrong";
-            return Some(Warning::new(Code::NoPattern, self.error, UNLIT_ERROR, message, advice));
+        let parts = "the lit share, the size or the spacing of its lamps";
+        let difference = || format!("the texture differs from the photo by {} in {parts}", percent(self.error));
+        let first_error = self.first_error.unwrap_or(self.error);
+        if first_error > UNLIT_ERROR {
+            let message = if self.error < first_error {
+                format!(
+                    "{}; it was chosen because the pattern that the lamps suggest would differ by {}, more than a texture \
+                     without light does",
+                    difference(),
+                    percent(first_error)
+                )
+            } else {
+                format!("{}, more than a texture without light does", difference())
+            };
+            let advice = "do not use the texture unless it looks like the photo: if the lamps hang or lie on several planes, \
+                          the photo has no pattern to copy; otherwise paint more strokes where the masks are wrong";
+            return Some(Warning::new(Code::NoPattern, first_error, UNLIT_ERROR, message, advice));
         }
         Warning::above(
             Code::PatternUncertain,

@@ -68,8 +68,8 @@ pub unsafe extern "C" fn luxfer_emission_clear_styles(emission: *mut luxfer_emis
 
 /// Starts a job that composes the texture: it decides where every lamp lies, but makes no texels. The composition
 /// replaces a texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
-/// luxfer_emission_get_report and luxfer_emission_get_luminaire describe the composition and its lamps. The caller
-/// releases *job. Any thread.
+/// LUXFER_LAW_BEST never tries a second law here, because that needs the texels. luxfer_emission_get_report and
+/// luxfer_emission_get_luminaire describe the composition and its lamps. The caller releases *job. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start_composition(
     emission: *mut luxfer_emission,

@@ -123,11 +123,13 @@ impl Statistics {
     }
 
     /// The largest difference between two patterns in lit share, lamp area and lamp spacing, relative to `other`. A
-    /// quantity that is 0 in either pattern is skipped. Luminance is not compared: a texture holds relative values, and
+    /// quantity that is 0 in `other` is skipped, as are area and spacing if they are 0 in this pattern. Luminance is not compared: a texture holds relative values, and
     /// its absolute luminance is solved for later.
     pub fn difference(&self, other: &Self) -> f64 {
         let pairs = [(self.lit, other.lit), (self.area, other.area), (self.spacing, other.spacing)];
-        pairs.iter().filter(|(a, b)| *a > 0.0 && *b > 0.0).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max)
+        let is_unlit = self.lit == 0.0 && other.lit > 0.0;
+        let known = pairs.iter().filter(|(a, b)| *a > 0.0 && *b > 0.0).map(|(a, b)| (a / b - 1.0).abs());
+        known.fold(if is_unlit { 1.0 } else { 0.0 }, f64::max)
     }
 }
 
@@ -237,6 +239,7 @@ mod tests {
         assert!((Statistics { area: 12.0, ..one }.difference(&one) - 0.2).abs() < 1e-12);
         assert_eq!(Statistics { luminance: 2.0, ..one }.difference(&one), 0.0);
         assert_eq!(Statistics { area: 0.0, spacing: 0.0, whole: 0, ..one }.difference(&one), 0.0);
+        assert_eq!(Statistics::default().difference(&one), 1.0, "a black texture lacks all light");
         assert!((one.scaled(2.0).difference(&one) - 3.0).abs() < 1e-12);
     }
 

@@ -309,7 +309,7 @@ fn score(exemplar: &Exemplar, evidence: &Evidence, law: Law) -> f64 {
 
 /// Whether two laws are equal except for a small difference between their periods. `Whole` and `Free`, which have no
 /// measured period, count as equal.
-fn is_same(a: Law, b: Law) -> bool {
+pub fn is_same(a: Law, b: Law) -> bool {
     let near = |[a, b]: [DVec2; 2], [c, d]: [DVec2; 2]| {
         let close = |p: DVec2, q: DVec2| {
             (p - q).length().min((p + q).length()) < MAX_PERIOD_DIFFERENCE * p.length().max(q.length())

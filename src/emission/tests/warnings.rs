@@ -51,6 +51,17 @@ fn a_texture_further_from_the_photo_than_darkness_has_no_pattern() {
 }
 
 #[test]
+fn a_texture_by_another_law_is_still_doubted() {
+    let second = Emission { error: 0.1, first_error: Some(2.52), ..made() };
+    let warnings = second.warnings();
+    assert_eq!((warnings[0].code, warnings[0].severity), (Code::NoPattern, 2.52));
+    assert!(warnings[0].message.contains("10 %") && warnings[0].message.contains("252 %"), "{}", warnings[0].message);
+    // No other law was better.
+    let first = Emission { error: 2.52, first_error: Some(2.52), ..made() };
+    assert_eq!(first.warnings(), Emission { error: 2.52, ..made() }.warnings());
+}
+
+#[test]
 fn a_single_lamp_is_no_pattern_but_may_be_copied() {
     let single = Emission { exemplar_lamps: 1, ..made() };
     assert_eq!(codes(&single), [Code::FewLamps]);

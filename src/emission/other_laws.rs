@@ -1,0 +1,53 @@
+//! A second attempt if the first texture clearly differs from the photo: textures by the other laws.
+//!
+//! The lamps of a photo may suggest a wrong law, for example if bars merge the panes of a skylight, or if the farthest
+//! row of lamps is displaced by blur. The score of a law ([`super::Choice`]) does not show this, but the statistics of
+//! the texture do.
+
+use super::analysis::{Analysis, is_same};
+use super::compose::composition::Composition;
+use super::warnings::UNLIT_ERROR;
+use super::{Emission, Input, Law, LawMode, Params, make};
+use crate::error::{ErrorKind, Result};
+use crate::job::Job;
+use std::mem::discriminant;
+
+const OTHER_LAWS: [LawMode; 4] = [LawMode::Lattice, LawMode::Row, LawMode::Whole, LawMode::Free];
+
+/// Returns the texture that differs least from the photo: `first`, or a texture by another law. Other laws are tried
+/// only if `params` leave the law open, and if the error of `first` exceeds that of a texture without light.
+///
+/// A texture by another law must also agree with the statistics that were expected of `first`, because each law weights
+/// the photo in its own way, and a law may expect hardly any light. Errors: cancelled; no memory.
+pub fn try_other_laws(first: Emission, input: &Input, params: &Params, job: Job) -> Result<Emission> {
+    if !(first.error > UNLIT_ERROR) || params.law != LawMode::Best {
+        return Ok(first);
+    }
+    let (expected, first_error) = (first.statistics[0], first.error);
+    let mut tried = vec![first.law];
+    let mut best = first;
+    for (k, mode) in OTHER_LAWS.into_iter().enumerate() {
+        let part = |share: f64| (k as f64 + share) / OTHER_LAWS.len() as f64;
+        let params = Params { law: mode, ..params.clone() };
+        let analysis = match Analysis::new(input, &params, job.part(part(0.0), part(0.2))) {
+            // The lights show no period of this kind.
+            Err(error) if error.kind == ErrorKind::Degenerate => continue,
+            other => other?,
+        };
+        if tried.iter().any(|law| is_equal(*law, analysis.law)) {
+            continue;
+        }
+        tried.push(analysis.law);
+        let composition = Composition::of(Some(analysis), input, &[], &params, job.part(part(0.2), part(0.6)))?;
+        let mut made = make(composition, input, &[], &params, job.part(part(0.6), part(1.0)))?;
+        made.error = made.error.max(made.statistics[1].difference(&expected));
+        if made.error < best.error {
+            best = made;
+        }
+    }
+    Ok(Emission { first_error: Some(first_error), ..best })
+}
+
+fn is_equal(a: Law, b: Law) -> bool {
+    discriminant(&a) == discriminant(&b) && is_same(a, b)
+}
