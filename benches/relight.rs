@@ -12,8 +12,8 @@ use luxfer::exec::Pool;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight::{
-    Aspect, Constraint, EmissionLamps, Goal, GroupParams, Importance, ImportanceParams, Input, Params, PlacementParams,
-    Quantity, Solution, TargetGeometry, lamp_responses, run, solve_groups,
+    EmissionLamps, GroupParams, Importance, ImportanceParams, Input, Params, PlacementParams, Quantity, Solution,
+    lamp_responses, run, solve_groups,
 };
 use luxfer::render::World;
 use luxfer::scene::{Material, Mesh, Scene, Texture, TextureRef, surface};
@@ -268,23 +268,10 @@ fn coverage(case: &Case, truth: DVec3) {
 
 /// Measures the time of an importance map, and of one texture's response from it.
 fn map(case: &Case) {
-    // Give the lamp texture coordinates, which the map needs.
-    let mut scene = (*case.scene).clone();
-    for mesh in scene.meshes.iter_mut().filter(|m| m.material == case.emitter) {
-        mesh.uvs[0] = mesh.positions.iter().map(|p| Vec2::new((p.x - 2.2) / 1.6, (p.z - 1.2) / 1.6)).collect();
-    }
-    let scene = Arc::new(scene);
     let monitor = Monitor::default();
-    let goal = Goal {
-        geometry: TargetGeometry::Surface(&case.target),
-        quantity: Quantity::Outgoing,
-        target: Vec3::ONE,
-        aspect: Aspect::Colour,
-        constraint: [Constraint::Exactly; 3],
-        weight: 1.0,
-    };
+    let goal = scenes::exact_goal(&case.target, Quantity::Outgoing, Vec3::ONE);
     let (seconds, map) = time(Clock::Wall, || {
-        Importance::trace(&scene, case.emitter, &goal, &ImportanceParams::default(), monitor.job()).expect("a map")
+        Importance::trace(&case.scene, case.emitter, &goal, &ImportanceParams::default(), monitor.job()).expect("a map")
     });
     let texture = Texture::new(
         "lamps",
@@ -318,14 +305,7 @@ const LIT: f32 = 0.01;
 fn lamps() {
     let halls = [1usize, 100, 10_000].map(|count| (count, Arc::new(hall(count))));
     let floor = [(0, 0), (0, 1)];
-    let goals = [Goal {
-        geometry: TargetGeometry::Surface(&floor),
-        quantity: Quantity::Incident,
-        target: Vec3::splat(100.0),
-        aspect: Aspect::Colour,
-        constraint: [Constraint::Exactly; 3],
-        weight: 1.0,
-    }];
+    let goals = [scenes::exact_goal(&floor, Quantity::Incident, Vec3::splat(100.0))];
     let solve = |scene: &Arc<Scene>| {
         let monitor = Monitor::default();
         let world = World::build(scene.clone(), monitor.job()).expect("a valid scene");

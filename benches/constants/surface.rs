@@ -4,7 +4,7 @@ use crate::harness::{figure, scenes};
 use glam::{Mat3, Vec2, Vec3};
 use luxfer::image::Image;
 use luxfer::job::Monitor;
-use luxfer::relight::{Aspect, Constraint, Goal, Importance, ImportanceParams, Quantity, TargetGeometry};
+use luxfer::relight::{Importance, ImportanceParams, Quantity};
 use luxfer::rng::Rng;
 use luxfer::scene::{Camera, Material, Mesh, Scene, Texture, surface};
 use std::sync::Arc;
@@ -94,19 +94,8 @@ pub fn map() {
     let setting = scenes::demo_room().expect("a room");
     let ceiling = surface::find(&setting.scene, "Ceiling").expect("a ceiling");
     let emitter = setting.scene.materials.len() - 1;
-    let mut scene = setting.scene;
-    for mesh in scene.meshes.iter_mut().filter(|m| m.material == emitter) {
-        mesh.uvs[0] = mesh.positions.iter().map(|p| Vec2::new((p.x - 2.2) / 1.6, (p.z - 1.2) / 1.6)).collect();
-    }
-    let goal = Goal {
-        geometry: TargetGeometry::Surface(&ceiling.triangles),
-        quantity: Quantity::Outgoing,
-        target: Vec3::ONE,
-        aspect: Aspect::Colour,
-        constraint: [Constraint::Exactly; 3],
-        weight: 1.0,
-    };
-    let (scene, monitor) = (Arc::new(scene), Monitor::default());
+    let goal = scenes::exact_goal(&ceiling.triangles, Quantity::Outgoing, Vec3::ONE);
+    let (scene, monitor) = (Arc::new(setting.scene), Monitor::default());
     let mut worst = [0.0f64; 2];
     for (k, cells) in [16, 64].into_iter().enumerate() {
         let mut params = ImportanceParams { width: cells, height: cells, ..ImportanceParams::default() };

@@ -8,6 +8,7 @@ use glam::{Mat4, Vec2, Vec3};
 use luxfer::demo;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
+use luxfer::relight::{Aspect, Constraint, Goal, Quantity, TargetGeometry};
 use luxfer::scene::{Camera, Material, Mesh, Scene, gltf};
 use luxfer::segment::StrokeSet;
 use luxfer::transfer::Input;
@@ -185,12 +186,27 @@ pub fn sheet(name: &str, material: usize, n: u32, at: impl Fn(f32, f32) -> Vec3)
     mesh
 }
 
-/// Adds a rectangular lamp that faces down. `corner` is its corner of minimum x and z; `luminance` is in cd/m².
+/// Adds a rectangular lamp that faces down. `corner` is its corner of minimum x and z, with the texture coordinates
+/// (0, 0); `luminance` is in cd/m².
 pub fn lamp(scene: &mut Scene, corner: Vec3, size: Vec2, luminance: f32) {
     let black = Material::diffuse("Lamp", Vec3::ZERO);
     scene.materials.push(Material { emission: Vec3::splat(luminance), ..black });
     let material = scene.materials.len() - 1;
-    scene.meshes.push(sheet("Lamp", material, 1, |s, t| corner + Vec3::new(size.x * s, 0.0, size.y * t)));
+    let mut mesh = sheet("Lamp", material, 1, |s, t| corner + Vec3::new(size.x * s, 0.0, size.y * t));
+    mesh.uvs[0] = vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE];
+    scene.meshes.push(mesh);
+}
+
+/// The goal that a surface has the radiance or, as incident light, the illuminance divided by π, `target` per channel.
+pub fn exact_goal(triangles: &[(usize, usize)], quantity: Quantity, target: Vec3) -> Goal<'_> {
+    Goal {
+        geometry: TargetGeometry::Surface(triangles),
+        quantity,
+        target,
+        aspect: Aspect::Colour,
+        constraint: [Constraint::Exactly; 3],
+        weight: 1.0,
+    }
 }
 
 fn with_own_camera(name: &'static str, scene: Scene, size: [usize; 2]) -> Result<Setting, Absent> {

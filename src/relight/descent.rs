@@ -7,7 +7,7 @@ use crate::job::Job;
 pub(super) struct Bounds<const N: usize> {
     pub min: [f64; N],
     pub max: [f64; N],
-    /// Period of the function in each variable. A variable whose range covers a period is unbounded.
+    /// Period of the function in each variable. A variable whose range covers a period may take any value.
     pub period: [f64; N],
 }
 
@@ -29,6 +29,7 @@ const FIRST_STEP: f64 = 0.05;
 const MIN_RELATIVE_GAIN: f64 = 1e-10;
 
 impl<const N: usize> Bounds<N> {
+    /// Whether a variable may take any value, because its range covers a period of the function.
     fn is_open(&self, i: usize) -> bool {
         self.max[i] - self.min[i] >= self.period[i] * (1.0 - 1e-12)
     }
@@ -42,7 +43,8 @@ impl<const N: usize> Bounds<N> {
         std::array::from_fn(|i| self.min[i] + share[i] * (self.max[i] - self.min[i]))
     }
 
-    /// Moves each unbounded variable by whole periods into its bounds; the function has the same value there.
+    /// Moves each variable that may take any value by whole periods into the period that begins at `min`. The function
+    /// has the same value there.
     pub fn wrapped(&self, x: [f64; N]) -> [f64; N] {
         std::array::from_fn(|i| {
             if self.is_open(i) { self.min[i] + (x[i] - self.min[i]).rem_euclid(self.period[i]) } else { x[i] }

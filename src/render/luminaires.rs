@@ -78,8 +78,8 @@ struct Shape {
 /// (1, 1, 1).
 #[derive(Clone, Copy)]
 enum IntensityBound {
-    /// With the value I₀: a triangle of area a, in a patch of area A, emits at most I₀ (a / A) cos θ at the angle θ to
-    /// its normal.
+    /// `Cosine(I₀)`: a triangle of area a, in a patch of area A, emits at most I₀ (a / A) cos θ at the angle θ to its
+    /// normal.
     Cosine(f64),
     /// The intensity of a flat patch is at most `peak` up to `angle` (radians) from its normal, and 0 beyond.
     Cone { peak: f64, angle: f64 },

@@ -42,7 +42,8 @@ struct State {
     picture: Image,
     /// For each target patch, whether it keeps its match of the previous frame; empty without motion.
     kept: Vec<bool>,
-    /// The memory of this frame's guides, with the light for which the kept matches were chosen.
+    /// This frame's guides, by which the next frame decides which matches it keeps. For a kept match, the light is that
+    /// of the frame that chose the match.
     memory: Option<Memory>,
 }
 

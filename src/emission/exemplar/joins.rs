@@ -26,7 +26,7 @@ const MAX_STRIP: f64 = 0.2;
 /// parts of anything. [convention]
 const MIN_COVERED: f64 = 0.85;
 /// Images with more lights than this are left as they are. The search compares all pairs of lights, so its time grows
-/// with the square of their number. Of so many lamps, enough are in one piece to show the pattern. [convention]
+/// with the square of their number. Among this many lamps, enough are in one piece to show the pattern. [convention]
 const MAX_LIGHTS: usize = 400;
 
 /// Returns the light mask with the strips inside lamps filled. `None` if no lamp consists of two parts, or if there are

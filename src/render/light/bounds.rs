@@ -196,10 +196,10 @@ impl BoundsLanes {
             let squared = larger(d[0] * d[0] + d[1] * d[1] + d[2] * d[2], nearest);
             let inverse = 1.0 / squared.sqrt();
             // Bound the cosine at the emitters. A surface emits up to 90° from its normal, so the normals of a cluster
-            // of surfaces lie within `cone_angle` - 90° of the axis. θ is the angle between the axis and the direction
-            // from the centre of the box to the receiver. So the bound is cos(θ - (`cone_angle` - 90°)), or 1 if this
-            // angle is negative, plus an allowance for the extent of the box. Point lights have no normal; their bound
-            // is the same by the definition of `cone_angle`.
+            // of surfaces lie within α = `cone_angle` - 90° of the axis. θ is the angle between the axis and the
+            // direction from the centre of the box to the receiver. If θ ≤ α, a normal may point at the receiver, and
+            // the bound is 1. Otherwise, the bound is cos(θ - α). An allowance for the extent of the box is added to
+            // it. Point lights have no normal; their bound is the same by the definition of `cone_angle`.
             let cosine = -(self.axis[0][i] * d[0] + self.axis[1][i] * d[1] + self.axis[2][i] * d[2]) * inverse;
             let cosine = larger(cosine, cosine * self.back_sign[i]);
             let sine = larger(1.0 - cosine * cosine, 0.0).sqrt();
