@@ -4,7 +4,7 @@
 
 mod harness;
 
-use glam::{DVec3, Mat3, Vec2, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 use harness::plot::Plot;
 use harness::{Clock, Table, absent, figure, interleaved, median, scenes, time};
 use luxfer::error::Error;

@@ -151,7 +151,7 @@ impl Bench {
             .collect();
         let input = Input {
             previous: before.map(|b| &b.0.field),
-            memory: before.map(|b| &b.0.memory),
+            guide_record: before.map(|b| &b.0.guide_record),
             motion: before.map(|b| b.1),
             ..Input::new(&self.artwork, &guides)
         };

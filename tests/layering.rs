@@ -73,7 +73,7 @@ const UNSAFE: &[&str] = &[
     "rectify/gather.rs",
     "accel/cluster.rs",
     "accel/lanes.rs",
-    "accel/lines.rs",
+    "accel/cache_lines.rs",
     "accel/node.rs",
     "accel/packet.rs",
     "accel/pages.rs",

@@ -1,7 +1,7 @@
 //! The planes of objects that face the room, and maps of importance.
 
 use crate::harness::{figure, scenes};
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Mat3, Vec3};
 use luxfer::image::Image;
 use luxfer::job::Monitor;
 use luxfer::relight::{Importance, ImportanceParams, Quantity};

@@ -1,8 +1,8 @@
 //! Builds the acceleration structure: sorts triangles into leaves, clusters them, optimises and collapses the tree.
 
+use super::cache_lines::Lines;
 use super::costs::Source;
 use super::leaves::{self, Leaves};
-use super::lines::Lines;
 use super::node::Child;
 use super::reinsert::Reinsertion;
 use super::traverse::{Accel, SHORT_STACK};

@@ -8,8 +8,8 @@
 //! For parallel work, the tree is cut near its root into parts. The cut depends on the tree alone, not on the number
 //! of threads.
 
+use super::cache_lines::{Draft, Lines};
 use super::costs::{Branch, Content, CostedPart, Source, distribute};
-use super::lines::{Draft, Lines};
 use super::node::{Child, Node};
 use super::packet::{Packet, WIDTH};
 use super::tree::{Tree, half_area};

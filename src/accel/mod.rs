@@ -12,12 +12,12 @@
 //! Not modelled: motion, instancing, curves.
 
 mod build;
+mod cache_lines;
 mod cluster;
 mod collapse;
 mod costs;
 mod lanes;
 mod leaves;
-mod lines;
 mod node;
 mod packet;
 mod pages;

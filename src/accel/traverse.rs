@@ -1,7 +1,7 @@
 //! Traversal of the acceleration structure: finds the nearest hit of a ray, or whether there is any hit.
 
+use super::cache_lines::Lines;
 use super::lanes::{self, Baseline, Lanes, take_highest, take_lowest};
-use super::lines::Lines;
 use super::node::{Child, Node, NodeRay};
 use super::packet::{Packet, TriangleRay};
 use super::prepared_ray::PreparedRay;

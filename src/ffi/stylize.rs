@@ -371,8 +371,8 @@ pub unsafe extern "C" fn luxfer_stylize_start(
                 _ => None,
             };
             inputs.with_input(|input| {
-                let (field, memory) = (before.map(|b| &b.field), before.map(|b| &b.memory));
-                let input = stylize::Input { previous: field, memory, motion, ..*input };
+                let (field, guide_record) = (before.map(|b| &b.field), before.map(|b| &b.guide_record));
+                let input = stylize::Input { previous: field, guide_record, motion, ..*input };
                 let (updater, output) = if keep {
                     let (updater, output) = stylize::Updater::new(&input, &params, &publish, job)?;
                     (Some(updater), output)

@@ -4,7 +4,7 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::guides::Surfaces;
 use crate::image::Image;
 use crate::patch::Field;
-use crate::stylize::{IntermediateResult, LevelReport, Memory, Output, Updater, Usage};
+use crate::stylize::{GuideRecord, IntermediateResult, LevelReport, Output, Updater, Usage};
 use crate::warning::Warning;
 use std::sync::{Arc, Mutex};
 
@@ -41,7 +41,7 @@ pub(super) struct Finished {
 /// The parts of a result that the next frame of a sequence needs.
 pub(super) struct Frame {
     pub field: Field,
-    pub memory: Memory,
+    pub guide_record: GuideRecord,
     pub surfaces: Option<Arc<Surfaces>>,
 }
 
@@ -79,7 +79,7 @@ impl Stylised {
                 patch: report.patch,
                 broken: [report.broken_source, report.broken_target],
                 warnings,
-                frame: Arc::new(Frame { field: output.field, memory: output.memory, surfaces }),
+                frame: Arc::new(Frame { field: output.field, guide_record: output.guide_record, surfaces }),
                 updater: updater.map(|s| Arc::new(Mutex::new(s))),
             }),
         }

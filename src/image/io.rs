@@ -18,7 +18,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 pub use crate::image::openexr::{Layer, encode as encode_exr};
-pub use crate::image::working::working_bytes;
+pub use crate::image::working_memory::working_bytes;
 
 /// A picture in linear Rec.709, turned upright, with the metadata of its file.
 #[derive(Clone, Debug)]

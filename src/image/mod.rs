@@ -28,7 +28,7 @@ pub mod regions;
 mod samples;
 mod tiff;
 pub mod view;
-mod working;
+mod working_memory;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
 pub(crate) use buffer::{no_memory, reserve_capacity};

@@ -1,8 +1,8 @@
 //! Reads and writes IES LM-63 files of all editions from 1986 to 2019, with type C photometry. Types A (car lamps) and
 //! B (floodlights) are refused.
 
-use super::lines::{self, Lines, MAX_ANGLES, MAX_VALUES, at, count, number, plain, within};
 use super::luminaire::Luminaire;
+use super::text_lines::{self, Lines, MAX_ANGLES, MAX_VALUES, at, count, number, plain, within};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
 use std::fmt::Write;
@@ -210,7 +210,7 @@ fn push(text: &mut String, values: &[f64]) {
 }
 
 /// Maximum size in bytes of an IES file.
-pub const MAX_BYTES: usize = lines::MAX_BYTES;
+pub const MAX_BYTES: usize = text_lines::MAX_BYTES;
 
 #[cfg(test)]
 mod tests {

@@ -1,8 +1,8 @@
 //! Reads and writes EULUMDAT files (Stockmar 1990). They have one value per line in a fixed order, and intensities in
 //! candela per 1000 lumens of the lamps.
 
-use super::lines::{Lines, MAX_ANGLES, MAX_VALUES, at, count, plain, within};
 use super::luminaire::Luminaire;
+use super::text_lines::{Lines, MAX_ANGLES, MAX_VALUES, at, count, plain, within};
 use crate::error::Result;
 use crate::image::try_vec;
 use std::fmt::Write;

@@ -19,11 +19,11 @@ pub mod glare;
 mod glyphs;
 pub mod ies;
 pub mod ldt;
-mod lines;
 pub mod luminaire;
 pub mod opening;
 pub mod presets;
 pub mod temperature;
+mod text_lines;
 
 pub use luminaire::Luminaire;
 

@@ -13,11 +13,11 @@
 //! Each residual is the residual of a mean over many paths. Single texels are not compared with the photo, because
 //! their noise would bias the powers towards dark.
 
+use super::dimming::Terms;
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
 use super::sided::{self, Constraint, Problem};
 use super::solution::TargetStatus;
-use super::steps::Terms;
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::exec;
 use crate::image::try_vec;
@@ -48,7 +48,7 @@ pub struct GroupParams {
     /// Maximum multiplier of each group's emission, ≥ 0, may be infinite; empty for no bounds.
     pub max_scale: Vec<f64>,
     /// Available multipliers (dimming levels), each ≥ 0, at most [`MAX_LEVELS`] of them; empty for continuous dimming.
-    /// Groups get the levels that together best meet the goals ([`super::steps`]). The confidence intervals of the
+    /// Groups get the levels that together best meet the goals ([`super::dimming`]). The confidence intervals of the
     /// powers then include the difference from the continuous powers.
     pub levels: Vec<f64>,
     /// Weight of the regularisation towards equal powers, relative to the mean squared norm of the rows of the least
@@ -281,7 +281,7 @@ impl System<'_> {
         self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.regularisation))
     }
 
-    /// Replaces the powers by the dimming levels that together best meet the goals ([`super::steps`]).
+    /// Replaces the powers by the dimming levels that together best meet the goals ([`super::dimming`]).
     fn stepped(&self, measured: &Measured, whole: &[DVec3]) -> Vec<DVec3> {
         let upper = self.upper();
         let mut levels = self.params.levels.clone();

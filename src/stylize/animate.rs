@@ -4,16 +4,16 @@
 //! - patches whose match fits badly;
 //! - patches astride a silhouette: their pixels do not all come from one patch of the previous frame. If they kept a
 //!   match, its paint would stay behind as the ghost of a contour;
-//! - patches whose light has changed since their match was chosen (`memory`). The change adds up over the frames, so
-//!   the paint follows slow changes too.
+//! - patches whose light has changed since their match was chosen (`guide_record`). The change adds up over the frames,
+//!   so the paint follows slow changes too.
 //!
 //! `Params::coherence` is the share of fitting matches that are kept: 1 keeps all, 0 none. In between, each frame keeps
 //! the matches of a random set of blocks. The frames then flicker as if painted by hand (after the temporal noise
 //! control of Fišer et al. 2014, "Color Me Noisy").
 
 use super::budget::budget;
+use super::guide_record::GuideRecord;
 use super::level::{Level, Problem};
-use super::memory::Memory;
 use super::params::Params;
 use super::picture::paint;
 use crate::error::Result;
@@ -74,19 +74,19 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Moved> {
     Ok(Moved { field, from })
 }
 
-/// The memories of the previous frame and of this frame.
-pub(super) type Memories<'a> = Option<(&'a Memory, &'a Memory)>;
+/// The records of the guides of the previous frame and of this frame.
+pub(super) type GuideRecords<'a> = Option<(&'a GuideRecord, &'a GuideRecord)>;
 
 /// Computes the distances of the advected matches, and returns which target patches keep their match. A patch keeps its
 /// match if all of these conditions hold:
 /// - The error of the match lies left of the knee of the sorted errors.
-/// - The light on the patch has hardly changed since the match was chosen; always true without `memories`.
+/// - The light on the patch has hardly changed since the match was chosen; always true without `guide_records`.
 /// - The patch is not astride a silhouette, and its centre was visible in the previous frame.
 /// - [`Params::coherence`] does not choose the block of the patch for new matches.
 pub(super) fn keep(
     level: &mut Level,
     moved: &mut Moved,
-    memories: Memories,
+    guide_records: GuideRecords,
     params: &Params,
     seed: u64,
     job: Job,
@@ -108,7 +108,7 @@ pub(super) fn keep(
         // Each block has a limit of its own, 0.5 to 1.5 times `MAX_CHANGE`. Under a slow change of light, the blocks
         // therefore rematch in different frames.
         let share = 0.5 + Rng::new(2, &block(i)).next_f32();
-        memories.is_none_or(|(before, now)| now.change(i, before, from[i] as usize) <= share * MAX_CHANGE)
+        guide_records.is_none_or(|(before, now)| now.change(i, before, from[i] as usize) <= share * MAX_CHANGE)
     };
     try_collect(
         (0..field.at.len())

@@ -97,8 +97,8 @@ pub(super) fn with_normals<'a>(
         return Ok((guides, 0.0));
     };
     guides.iter().chain([&normals]).try_for_each(|guide| guide.check(first))?;
-    let weight = match input.memory.filter(|memory| memory.is_of_frame()) {
-        Some(memory) => memory.normals_weight,
+    let weight = match input.guide_record.filter(|guide_record| guide_record.is_of_frame()) {
+        Some(guide_record) => guide_record.normals_weight,
         None if directions(input, &normals, source_mask, job)?.follow_shapes() => normals.weight,
         None => 0.0,
     };

@@ -2,9 +2,9 @@
 //! ([`Level`]).
 
 use super::directions::with_normals;
+use super::guide_record::GuideRecord;
 use super::guides::{Channels, no_guides};
 use super::lack::LightSamples;
-use super::memory::Memory;
 use super::params::{Input, Params, check_side};
 use super::pca;
 use crate::error::{Error, Result};
@@ -29,7 +29,7 @@ pub(super) struct Problem {
     /// Number of non-finite pixels in the exemplar (`.0`) and in the target (`.1`).
     pub broken: (usize, usize),
     /// The target's guides for the next frame of a sequence; `None` on coarse levels.
-    pub memory: Option<Memory>,
+    pub guide_record: Option<GuideRecord>,
     /// Samples of the guides of light; `None` on coarse levels, and if no guide of light has a weight above 0.
     pub light: Option<LightSamples>,
     /// Weight of [`Input::normals`]: 0 if they are not used.
@@ -81,7 +81,7 @@ impl Problem {
         check_motion(input, first.target)?;
         // Reduce the patch to an odd width that fits.
         let patch = if params.patch <= shortest { params.patch } else { (shortest - 1) | 1 };
-        let memory = Some(Memory::of(&guides, normals_weight, patch, job)?);
+        let guide_record = Some(GuideRecord::of(&guides, normals_weight, patch, job)?);
         let light = LightSamples::of(&guides, source_mask.as_deref())?;
         if params.preview {
             pca::compress(&mut guides, job)?;
@@ -94,7 +94,7 @@ impl Problem {
             target_mask,
             known,
             broken: counts,
-            memory,
+            guide_record,
             light,
             normals_weight,
         })
@@ -139,7 +139,7 @@ impl Problem {
                 broken_target: Vec::new(),
             },
             broken: self.broken,
-            memory: None,
+            guide_record: None,
             light: None,
             normals_weight: self.normals_weight,
         })

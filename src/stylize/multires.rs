@@ -6,9 +6,9 @@ use super::border::{self, Border};
 use super::exemplar::examine;
 use super::finder::Nearest;
 use super::greedy;
+use super::guide_record::GuideRecord;
 use super::lack::lack;
 use super::level::{Level, Problem};
-use super::memory::Memory;
 use super::output::{IntermediateResult, Output, Publish};
 use super::params::{Finder, Input, Mode, Params};
 use super::picture::{DecodeInput, decode, decode_into, paint, restore_known, unblended_share};
@@ -42,9 +42,9 @@ struct State {
     picture: Image,
     /// For each target patch, whether it keeps its match of the previous frame; empty without motion.
     kept: Vec<bool>,
-    /// This frame's guides, by which the next frame decides which matches it keeps. For a kept match, the light is that
-    /// of the frame that chose the match.
-    memory: Option<Memory>,
+    /// Record of this frame's guides, by which the next frame decides which matches it keeps. For a kept match, it
+    /// holds the light of the frame that chose the match.
+    guide_record: Option<GuideRecord>,
 }
 
 pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
@@ -117,18 +117,19 @@ fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, 
         None => by_guides_alone(problem, params, level.seed, job.part(0.0, 0.1))?,
     };
     // Keep the matches of the previous frame where they fit.
-    let mut memory = problem.memory.as_ref().map(Memory::try_clone).transpose()?;
+    let mut guide_record = problem.guide_record.as_ref().map(GuideRecord::try_clone).transpose()?;
     let kept = match &setup.moved {
         Some(moved) if l == 0 => {
             let from = try_collect(moved.from.iter().copied())?;
             let mut moved = Moved { field: checked(moved.field.try_clone()?, level)?, from };
-            let before = setup.input.memory.filter(|before| memory.as_ref().is_some_and(|now| now.is_like(before)));
-            let memories = before.zip(memory.as_ref());
-            let kept = keep(level, &mut moved, memories, params, hash(level.seed, &[1]), job.part(0.1, 0.1))?;
+            let before =
+                setup.input.guide_record.filter(|before| guide_record.as_ref().is_some_and(|now| now.is_like(before)));
+            let guide_records = before.zip(guide_record.as_ref());
+            let kept = keep(level, &mut moved, guide_records, params, hash(level.seed, &[1]), job.part(0.1, 0.1))?;
             for i in (0..kept.len()).filter(|&i| kept[i]) {
                 (field.at[i], field.error[i]) = (moved.field.at[i], moved.field.error[i]);
-                if let (Some(memory), Some(before)) = (&mut memory, before) {
-                    memory.recall(i, before, moved.from[i] as usize);
+                if let (Some(guide_record), Some(before)) = (&mut guide_record, before) {
+                    guide_record.recall(i, before, moved.from[i] as usize);
                 }
             }
             kept
@@ -137,7 +138,7 @@ fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, 
     };
     let mut picture = problem.blank_picture()?;
     paint(&mut picture, &field, problem, params.vote, job.part(0.1, 0.12), |_| true)?;
-    Ok(State { field, picture, kept, memory })
+    Ok(State { field, picture, kept, guide_record })
 }
 
 /// Alternates matching and voting on level `l`.
@@ -223,9 +224,9 @@ fn rematch(
 
 /// Decodes the picture of the finest level and completes the report.
 fn output(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
-    let State { field, picture, memory, .. } = state;
-    // Only pilot runs at reduced resolution have no memory: no later frame is compared with them.
-    let memory = memory.unwrap_or_default();
+    let State { field, picture, guide_record, .. } = state;
+    // Only pilot runs at reduced resolution have no record: no later frame is compared with them.
+    let guide_record = guide_record.unwrap_or_default();
     let problem = level.problem;
     let usage = Usage::of(&field, &level)?;
     drop(level);
@@ -246,16 +247,18 @@ fn output(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, j
         patch: problem.patch,
         broken_source: problem.broken.0,
         broken_target: problem.broken.1,
-        agreement: agreement(&memory, setup.input, setup.halved, job)?,
+        agreement: agreement(&guide_record, setup.input, setup.halved, job)?,
     };
-    Ok(Output { image, field, memory, report })
+    Ok(Output { image, field, guide_record, report })
 }
 
 /// Compares the motion, if any, with the guides of this frame and the previous one. A preview compares nothing: at
 /// half the resolution, pixels at silhouettes average the motion and guides of two surfaces.
-fn agreement(memory: &Memory, input: &Input, halved: usize, job: Job) -> Result<Comparison> {
-    match (input.motion, input.memory) {
-        (Some(motion), Some(before)) if halved == 0 && memory.is_like(before) => memory.agreement(before, motion, job),
+fn agreement(guide_record: &GuideRecord, input: &Input, halved: usize, job: Job) -> Result<Comparison> {
+    match (input.motion, input.guide_record) {
+        (Some(motion), Some(before)) if halved == 0 && guide_record.is_like(before) => {
+            guide_record.agreement(before, motion, job)
+        }
         _ => Ok(Comparison::default()),
     }
 }

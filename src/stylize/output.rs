@@ -1,6 +1,6 @@
 //! The results of a stylisation.
 
-use super::memory::Memory;
+use super::guide_record::GuideRecord;
 use super::report::{LevelReport, Report};
 use crate::image::Image;
 use crate::patch::Field;
@@ -11,8 +11,8 @@ pub struct Output {
     pub image: Image,
     /// The match of each target patch: the exemplar patch that it shows.
     pub field: Field,
-    /// What is remembered of the guides for the next frame of a sequence: see [`Input::memory`](super::Input::memory).
-    pub memory: Memory,
+    /// Record of the guides for the next frame of a sequence: see [`Input::guide_record`](super::Input::guide_record).
+    pub guide_record: GuideRecord,
     pub report: Report,
 }
 

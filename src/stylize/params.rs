@@ -1,7 +1,7 @@
 //! The inputs and the settings of a stylisation.
 
+use super::guide_record::GuideRecord;
 use super::guides::Guide;
-use super::memory::Memory;
 use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 use crate::patch::{Field, MAX_SIDE, VoteMode};
@@ -40,7 +40,7 @@ pub struct Input<'a> {
     pub guides: &'a [Guide<'a>],
     /// Normals, as a guide that the exemplar switches on: they are used, with the weight of this guide, if the strokes
     /// of the artwork follow the shapes ([`Directions::follow_shapes`](super::Directions::follow_shapes)). In a
-    /// sequence, the first frame decides: see `memory`.
+    /// sequence, the first frame decides: see `guide_record`.
     pub normals: Option<Guide<'a>>,
     /// Mask of the artwork, one channel: patches are taken only from pixels above 0.5. If absent, from all pixels.
     pub source_mask: Option<&'a Image>,
@@ -56,9 +56,9 @@ pub struct Input<'a> {
     /// `previous`: two channels, NaN where the point was not visible. Each target patch takes over the match of the
     /// patch from which its centre has moved; the share `Params::coherence` of these matches is kept.
     pub motion: Option<&'a Image>,
-    /// The memory of the frame of `previous`. With it, paint follows changes of light, and the report says how the
-    /// motion agrees with the guides.
-    pub memory: Option<&'a Memory>,
+    /// The record of the guides of the frame of `previous`. With it, paint follows changes of light, and the report
+    /// says how the motion agrees with the guides.
+    pub guide_record: Option<&'a GuideRecord>,
 }
 
 impl<'a> Input<'a> {
@@ -73,7 +73,7 @@ impl<'a> Input<'a> {
             known: None,
             previous: None,
             motion: None,
-            memory: None,
+            guide_record: None,
         }
     }
 }

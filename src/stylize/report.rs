@@ -60,7 +60,7 @@ pub struct Report {
     pub broken_source: usize,
     pub broken_target: usize,
     /// How the motion agrees with the guides of both frames. A pixel is wrong if its motion leads to another surface in
-    /// the previous frame. Zeros without motion or memory of the previous frame, and in a preview.
+    /// the previous frame. Zeros without motion or a record of the previous frame, and in a preview.
     pub agreement: Comparison,
     /// The part of the target whose light the exemplar lacks.
     pub lack: Lack,

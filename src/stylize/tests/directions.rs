@@ -31,8 +31,8 @@ fn the_normals_guide_strokes_that_follow_the_shapes_and_no_others() {
     let guides = [guide(&light, &target_light)];
     let slopes = Guide { name: "normals", source: &normals, target: &target_normals, weight: 0.5, range: Range::Data };
     let params = Params { levels: 2, ..Params::preview() };
-    let decided = |art: &Image, memory: Option<&Memory>| {
-        let input = Input { normals: Some(slopes), memory, ..input(art, &guides) };
+    let decided = |art: &Image, guide_record: Option<&GuideRecord>| {
+        let input = Input { normals: Some(slopes), guide_record, ..input(art, &guides) };
         (stylise(&input, &params).unwrap(), stylise(&Input { normals: None, ..input }, &params).unwrap())
     };
     // Rings around the middle of the ball follow its shape.
@@ -47,10 +47,10 @@ fn the_normals_guide_strokes_that_follow_the_shapes_and_no_others() {
         assert_eq!(with.report.normals_weight, 0.0);
         assert!(with.image == without.image && with.field.at == without.field.at);
     }
-    // Later frames of a sequence take over the decision of the first frame from its memory.
+    // Later frames of a sequence take over the decision of the first frame from its record.
     let (first, _) = decided(&slanted, None);
-    assert_eq!(decided(&rings, Some(&first.memory)).0.report.normals_weight, 0.0);
-    assert_eq!(decided(&slanted, Some(&with.memory)).0.report.normals_weight, 0.5);
+    assert_eq!(decided(&rings, Some(&first.guide_record)).0.report.normals_weight, 0.0);
+    assert_eq!(decided(&slanted, Some(&with.guide_record)).0.report.normals_weight, 0.5);
 }
 
 #[test]

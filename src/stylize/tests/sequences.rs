@@ -59,15 +59,16 @@ fn paint_follows_light_that_fades_slowly() {
         image
     };
     let still = Image::new(90, 70, 2).unwrap();
-    // Returns the mean lightness of the last of nine frames. `remembers` says whether each frame gets the memory of the
+    // Returns the mean lightness of the last of nine frames. `remembers` says whether each frame gets the record of the
     // previous frame.
     let last = |remembers: bool| {
         let mut output = stylise(&input(&art, &[guide(&a, &target(0))]), &Params::default()).unwrap();
         for t in 1..9 {
             let now = target(t);
             let guides = [guide(&a, &now)];
-            let memory = remembers.then_some(&output.memory);
-            let next = Input { previous: Some(&output.field), motion: Some(&still), memory, ..input(&art, &guides) };
+            let guide_record = remembers.then_some(&output.guide_record);
+            let next =
+                Input { previous: Some(&output.field), motion: Some(&still), guide_record, ..input(&art, &guides) };
             output = stylise(&next, &Params { seed: t as u64, ..Params::default() }).unwrap();
         }
         mean(&output.image)
@@ -90,10 +91,16 @@ fn light_that_stays_keeps_all_paint() {
     let guides = [guide(&a, &target)];
     let first = stylise(&input(&art, &guides), &Params::default()).unwrap();
     let still = Image::new(90, 70, 2).unwrap();
-    let again = |memory| Input { previous: Some(&first.field), motion: Some(&still), memory, ..input(&art, &guides) };
+    let again = |guide_record| Input {
+        previous: Some(&first.field),
+        motion: Some(&still),
+        guide_record,
+        ..input(&art, &guides)
+    };
     let params = Params { seed: 2, ..Params::default() };
-    let [with, without] = [Some(&first.memory), None].map(|memory| stylise(&again(memory), &params).unwrap());
-    assert!(with.image == without.image && with.memory == first.memory);
+    let [with, without] =
+        [Some(&first.guide_record), None].map(|guide_record| stylise(&again(guide_record), &params).unwrap());
+    assert!(with.image == without.image && with.guide_record == first.guide_record);
 }
 
 #[test]
@@ -108,8 +115,9 @@ fn wrong_motion_is_noticed_by_guides_of_data() {
         let guides = with_mark(&a, &now);
         let agreement = |motion: &dyn Fn(usize, usize) -> [f32; 2]| {
             let motion = Image::from_fn(90, 70, motion).unwrap();
-            let memory = Some(&first.memory);
-            let next = Input { previous: Some(&first.field), motion: Some(&motion), memory, ..input(&art, &guides) };
+            let guide_record = Some(&first.guide_record);
+            let next =
+                Input { previous: Some(&first.field), motion: Some(&motion), guide_record, ..input(&art, &guides) };
             stylise(&next, &params).unwrap().report.agreement
         };
         let ball = |x: usize, y: usize| now.1.pixel(x, y)[0] > 0.5;

@@ -13,10 +13,9 @@ const STEPS: f32 = 255.0;
 /// range. [judged on 1 scene]
 const DATA_TOLERANCE: f32 = 0.25;
 
-/// What a frame remembers of its guides. The default has no pixels and cannot be compared with the memory of any
-/// frame.
+/// Record of the guides of a frame. The default has no pixels and cannot be compared with the record of any frame.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Memory {
+pub struct GuideRecord {
     /// Size of the target in pixels, and number of patches along x and y.
     size: [usize; 2],
     patches: [usize; 2],
@@ -31,7 +30,7 @@ pub struct Memory {
     pub(super) normals_weight: f32,
 }
 
-impl Memory {
+impl GuideRecord {
     /// Stores the guides of a target.
     pub(super) fn of(guides: &Channels, normals_weight: f32, patch: usize, job: Job) -> Result<Self> {
         let target = &guides.target;
@@ -58,19 +57,19 @@ impl Memory {
         Ok(Self { light: copy(&self.light)?, data: copy(&self.data)?, weights: self.weights.clone(), ..*self })
     }
 
-    /// Whether this is the memory of a frame, not the default.
+    /// Whether this is the record of a frame, not the default.
     pub(super) fn is_of_frame(&self) -> bool {
         self.size != [0, 0]
     }
 
-    /// Whether values of both memories can be compared: the guides have equal sizes and channels.
+    /// Whether values of both records can be compared: the guides have equal sizes and channels.
     pub(super) fn is_like(&self, other: &Self) -> bool {
         (self.size, self.patches, self.weights.len(), self.data.len())
             == (other.size, other.patches, other.weights.len(), other.data.len())
     }
 
     /// Returns the weighted root mean square difference between the light on a patch and the light on a patch of
-    /// another memory.
+    /// another record.
     pub(super) fn change(&self, patch: usize, other: &Self, other_patch: usize) -> f32 {
         let n = self.weights.len();
         let light = self.light[patch * n..(patch + 1) * n].iter();
@@ -79,7 +78,7 @@ impl Memory {
         terms.sum::<f32>().sqrt()
     }
 
-    /// Replaces the light on a patch by the light on a patch of another memory.
+    /// Replaces the light on a patch by the light on a patch of another record.
     pub(super) fn recall(&mut self, patch: usize, other: &Self, other_patch: usize) {
         let n = self.weights.len();
         self.light[patch * n..(patch + 1) * n].copy_from_slice(&other.light[other_patch * n..(other_patch + 1) * n]);
