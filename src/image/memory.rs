@@ -1,5 +1,5 @@
 //! Upper bounds of the memory that third-party codecs need. These codecs abort the process if an allocation fails. The
-//! memory is therefore checked before they run, and charged to the caller's memory budget ([`super::working`]).
+//! memory is therefore checked before they run, and charged to the caller's memory budget ([`super::working_memory`]).
 //!
 //! The bounds follow the allocations of the crates `png`, `zune-jpeg`, `image-webp`, `gif`, `weezl` and `exr`. They do
 //! not include the buffers that this library passes to these crates.
