@@ -259,7 +259,7 @@ fn files_of_a_module_do_not_use_each_other_in_circles() {
     let file = |name: &str, text: &str| (name.to_string(), text.to_string());
     let all = [
         file("a/mod.rs", "mod b; mod c; pub use b::B; use c::C; /* */"),
-        file("a/b.rs", "use super::c::{self, C}; pub struct B;"),
+        file("a/b.rs", "use super::c::{self, C}; pub struct B { pub(in crate::a) c: C }"),
         file("a/c.rs", "pub struct C; fn f() { super::B; } // super::d::D"),
     ];
     assert_eq!(circles::circles(&all), [["a::b", "a::c"]]);

@@ -1,13 +1,16 @@
 //! A second attempt if the first texture clearly differs from the photo: textures by the other laws.
 //!
 //! The lamps of a photo may suggest a wrong law, for example if bars merge the panes of a skylight, or if the farthest
-//! row of lamps is displaced by blur. The score of a law ([`super::Choice`]) does not show this, but the statistics of
-//! the texture do.
+//! row of lamps is displaced by blur. The score of a law ([`super::analysis::Choice`]) does not show this, but the
+//! statistics of the texture do.
 
 use super::analysis::{Analysis, is_same};
+use super::assemble::assemble;
 use super::compose::composition::Composition;
+use super::lattice::law::Law;
+use super::output::Emission;
+use super::params::{Input, LawMode, Params};
 use super::warnings::UNLIT_ERROR;
-use super::{Emission, Input, Law, LawMode, Params, make};
 use crate::error::{ErrorKind, Result};
 use crate::job::Job;
 use std::mem::discriminant;
@@ -39,7 +42,7 @@ pub fn try_other_laws(first: Emission, input: &Input, params: &Params, job: Job)
         }
         tried.push(analysis.law);
         let composition = Composition::of(Some(analysis), input, &[], &params, job.part(part(0.2), part(0.6)))?;
-        let mut made = make(composition, input, &[], &params, job.part(part(0.6), part(1.0)))?;
+        let mut made = assemble(composition, input, &[], &params, job.part(part(0.6), part(1.0)))?;
         made.error = made.error.max(made.statistics[1].difference(&expected));
         if made.error < best.error {
             best = made;

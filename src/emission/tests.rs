@@ -15,8 +15,8 @@ use crate::exec::Pool;
 use crate::geometry::Homography;
 use crate::job::Monitor;
 use crate::rng::Rng;
-use exemplar::components;
-use glam::{DMat2, DVec2};
+use exemplar::{Exemplar, components};
+use glam::{DMat2, DVec2, Vec3};
 
 struct Design {
     unwarped: Image,

@@ -1,6 +1,7 @@
 //! Warnings about doubtful emissive textures.
 
-use super::{Emission, Law};
+use super::lattice::law::Law;
+use super::output::Emission;
 use crate::warning::{Code, Warning, percent};
 
 /// A warning is given if [`Emission::error`], the relative difference between the statistics of texture and photo,

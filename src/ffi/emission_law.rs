@@ -8,8 +8,8 @@ use crate::error::{Error, Result};
 /// The law, that is, the rule by which a texture continues the lights of its exemplar: a LUXFER_LAW_ value.
 pub type luxfer_emission_law = i32;
 /// In settings only: the law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept
-/// unless another law predicts the lamps clearly better. If the texture of a single exemplar then differs from the photo
-/// by more than 100 %, the other laws are tried, and the texture that differs least is kept. It still raises
+/// unless another law predicts the lamps clearly better. If the texture of a single exemplar then differs from the
+/// photo by more than 100 %, the other laws are tried, and the texture that differs least is kept. It still raises
 /// LUXFER_WARNING_NO_PATTERN.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
 /// In settings only: the law that the autocorrelation of the lights suggests. A period counts only if the correlation

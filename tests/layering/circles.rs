@@ -94,9 +94,20 @@ fn without_comment(line: &str) -> &str {
     starts.into_iter().find(outside).map_or(line, |at| &line[..at])
 }
 
+/// Removes the paths of visibilities, such as `in crate::scene` of `pub(in crate::scene)`: they use no item.
+fn without_visibility(tokens: Vec<String>) -> Vec<String> {
+    let mut out: Vec<String> = Vec::new();
+    let mut tokens = tokens.into_iter();
+    while let Some(token) = tokens.next() {
+        let is_path = token == "in" && out.ends_with(&["pub".to_string(), "(".to_string()]);
+        out.push(if is_path { tokens.find(|t| t == ")").unwrap_or(token) } else { token });
+    }
+    out
+}
+
 fn parse(text: &str) -> Module {
     const KINDS: [&str; 8] = ["fn", "struct", "enum", "trait", "type", "const", "static", "union"];
-    let tokens = tokens(text);
+    let tokens = without_visibility(tokens(text));
     let items = tokens.windows(2).filter(|w| KINDS.contains(&w[0].as_str())).map(|w| w[1].clone()).collect();
     let exported = statements(&tokens).filter(|s| s.is_export).flat_map(|s| paths(&mut s.tree.iter()));
     let exports = exported.filter_map(|p| Some((p.last()?.clone(), p))).collect();
