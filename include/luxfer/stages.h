@@ -668,7 +668,9 @@ typedef int32_t luxfer_emission_law;
 
 /**
  * In settings only: the law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept
- * unless another law predicts the lamps clearly better.
+ * unless another law predicts the lamps clearly better. If the texture of a single exemplar then differs from the
+ * photo by more than 100 %, the other laws are tried, and the texture that differs least is kept. It still raises
+ * LUXFER_WARNING_NO_PATTERN.
  */
 #define LUXFER_LAW_BEST 0
 
@@ -1027,8 +1029,8 @@ luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
 /**
  * Starts a job that composes the texture: it decides where every lamp lies, but makes no texels. The composition
  * replaces a texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
- * luxfer_emission_get_report and luxfer_emission_get_luminaire describe the composition and its lamps. The caller
- * releases *job. Any thread.
+ * LUXFER_LAW_BEST never tries a second law here, because that needs the texels. luxfer_emission_get_report and
+ * luxfer_emission_get_luminaire describe the composition and its lamps. The caller releases *job. Any thread.
  */
 luxfer_status luxfer_emission_start_composition(luxfer_emission *emission,
                                                 const luxfer_emission_params *params,

@@ -6,6 +6,7 @@ mod extremes;
 mod lines;
 mod outlines;
 mod placing;
+mod second_law;
 mod tiles;
 mod variety;
 

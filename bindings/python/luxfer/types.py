@@ -385,7 +385,9 @@ class EmissionLaw(IntEnum):
 
     BEST = 0
     """In settings only: the law that predicts the lamps of the photo best. The law of EmissionLaw.CORRELATION
-    is kept unless another law predicts the lamps clearly better."""
+    is kept unless another law predicts the lamps clearly better. If the texture of a single exemplar then
+    differs from the photo by more than 100 %, the other laws are tried, and the texture that differs least is
+    kept. It still raises WarningCode.NO_PATTERN."""
     CORRELATION = 1
     """In settings only: the law that the autocorrelation of the lights suggests. A period counts only if the
     correlation after a shift by this period is at least the setting min_regularity."""
