@@ -6,12 +6,15 @@ import ctypes
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
+import numpy as np
+
 from . import _abi, _params
 from .image import Image
 from .job import Job, Progress, StageBase
 from .types import Lamp, LampsGoal, LampsReport, LampsResponse, Quantity, Constraint
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
     from typing_extensions import Unpack
 
     from .scene import Scene
@@ -98,3 +101,13 @@ class Lamps(StageBase):
     def response(self, goal: int, lamp: int) -> LampsResponse:
         """The light that a goal receives from a lamp."""
         return cast(LampsResponse, self._read("get_response", _abi.luxfer_lamps_response, goal, lamp))
+
+    def responses(self, goals: int, lamps: int) -> NDArray[np.float64]:
+        """The mean light (goals, lamps, 3) that each of the first goals receives from each of the first lamps."""
+        out, found = np.empty((goals, lamps, 3)), _abi.luxfer_lamps_response()
+        size = ctypes.sizeof(found)
+        for goal in range(goals):
+            for lamp in range(lamps):
+                self._call("get_response", goal, lamp, found, size)
+                out[goal, lamp] = found.mean
+        return out

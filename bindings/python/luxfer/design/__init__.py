@@ -5,9 +5,11 @@ A Project holds a room, luminaires, areas, observers and requirements. Lengths a
 """
 
 from . import areas, emergency, ifc, observers, radiance, schedule, standard
+from .arrange import Arrangement, Offer, Search, arrange
 from .check import Checked, Finding, Settings, check
 from .command import main
 from .energy import Energy, Hours, Standby
+from .likeness import Likeness
 from .look import Distance, distance
 from .luminaires import Luminaire, Product, dimmed, from_transfer, layout, lit_scene
 from .project import Project
@@ -18,23 +20,28 @@ from .solve import Solution, Wishes, solve
 from .standard import Place, Requirement, place, places_from, requirements
 
 __all__ = [
+    "Arrangement",
     "Checked",
     "Distance",
     "Energy",
     "Finding",
     "Hours",
     "LightScene",
+    "Likeness",
     "Luminaire",
+    "Offer",
     "Place",
     "Product",
     "Project",
     "Requirement",
     "Room",
+    "Search",
     "Settings",
     "Solution",
     "Standby",
     "Wishes",
     "areas",
+    "arrange",
     "check",
     "dimmed",
     "distance",

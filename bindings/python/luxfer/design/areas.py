@@ -244,6 +244,20 @@ def walls(
     return _filled(area, [keep for _, keep in found])
 
 
+def thinned(area: Area, count: int) -> Area:
+    """The area with about that number of its points at most, evenly spread, to estimate means with."""
+    if area.count <= count:
+        return area
+    # Multiples of the golden ratio and its like in two dimensions are spread evenly. [convention: Roberts' R2 sequence]
+    share, patches = count / area.count, []
+    for patch in area.patches:
+        rows, columns = np.indices(patch.keep.shape)
+        some = patch.keep & ((0.7549 * rows + 0.5698 * columns) % 1 < share)
+        some = some if some.any() else patch.keep
+        patches.append(replace(patch, keep=some))
+    return replace(area, patches=tuple(patches))
+
+
 def around_tasks(room: Room, tasks: Sequence[Area]) -> list[Area]:
     """The surrounding areas of tasks, the background, walls, ceiling and cylindrical illuminance, as far as the room
     has room for them: a task that fills it has no surrounding area, and a small room no background."""

@@ -140,21 +140,21 @@ class Uniformity:
         mean = self.mean
         return 0.0 if mean <= 0 else float(self.values.min() / mean)
 
-    def failing(self, limit: float) -> NDArray[np.float64]:
-        """For each point, the probability that it lies below limit times the mean."""
+    def at_least(self, limit: float) -> tuple[float, float]:
+        """Confidence that U0 is at least the limit, and that it is below."""
         shares, variances = _shares(len(self.values), self.weights), self.errors**2
         gap = self.values - limit * self.mean
         # The point itself is a part of the mean.
         spread = np.sqrt(np.maximum(variances * (1 - 2 * limit * shares) + limit**2 * (shares**2 @ variances), 0))
-        return np.array([1 - Estimate(g, s).probability_at_least(0) for g, s in zip(gap, spread)])
+        return _all_of(_z(gap, spread), len(self.values))
 
     def probability_at_least(self, limit: float) -> float:
         """Confidence that U0 is at least the limit."""
-        return 1 - float(self.failing(limit).max())
+        return self.at_least(limit)[0]
 
     def probability_below(self, limit: float) -> float:
         """Confidence that U0 is below the limit."""
-        return float(np.maximum(0.0, 1 - len(self.values) * (1 - self.failing(limit)).min()))  # NaN stays NaN
+        return self.at_least(limit)[1]
 
     def interval(self, confidence: float = 0.95) -> tuple[float, float]:
         """The two-sided interval of that confidence."""

@@ -6,6 +6,8 @@ The lamps keep the photo's places and colours, so their look changes by their di
 - `pattern`: root mean square of the relative change of the lamps' flux, weighted by the photo's flux, after the one
   exposure that makes it smallest. 0: all brightness ratios are the photo's; 0.1: they are off by a tenth.
 - `exposure`: this factor for all lamps, in stops. The eye adapts to it, so it counts less.
+
+Where the lamps may move (arrange.py), likeness.py compares their pattern, too.
 """
 
 from __future__ import annotations
@@ -60,9 +62,11 @@ def distance(
     return Distance(pattern if pattern > 1e-9 else 0.0, math.log2(square / exposure))  # [rounding]
 
 
-def objective(photo: NDArray, flux: NDArray) -> tuple[NDArray, NDArray]:
+def objective(photo: NDArray, flux: NDArray, surfaces: NDArray | None = None) -> tuple[NDArray, NDArray]:
     """Hessian and gradient over the dimmers and the exposure k of `Σ w (s / p - k)² + EXPOSURE_WEIGHT (k - 1)²`,
-    where w is the share of a lamp in the photo's flux, s its dimmer and p that of the photo."""
+    where w is the share of a lamp in the photo's flux, s its dimmer and p that of the photo. With surfaces, also the
+    mean of `(Σ r s - k)²` over them, where r is the brightness of a surface by a lamp at full power as a share of its
+    brightness by the photo's lamps."""
     before = _at_least(photo)
     weights = before * flux
     weights = weights / weights.sum()
@@ -71,6 +75,9 @@ def objective(photo: NDArray, flux: NDArray) -> tuple[NDArray, NDArray]:
     hessian[:count, :count] = np.diag(2 * weights / before**2)
     hessian[:count, count] = hessian[count, :count] = -2 * weights / before
     hessian[count, count] = 2 * (weights.sum() + EXPOSURE_WEIGHT)
+    if surfaces is not None:
+        rows = np.hstack([surfaces, -np.ones((len(surfaces), 1))])
+        hessian += 2 * rows.T @ rows / len(rows)
     gradient = np.zeros(count + 1)
     gradient[count] = -2 * EXPOSURE_WEIGHT
     return hessian, gradient

@@ -144,8 +144,8 @@ def dimmed(luminaires: Sequence[Luminaire], dimmers: Sequence[float]) -> list[Lu
     return [replace(lamp, dimmer=float(d)) for lamp, d in zip(luminaires, dimmers)]
 
 
-def lit_scene(scene: Scene, luminaires: Sequence[Luminaire]) -> Scene:
-    """A copy of a scene with these luminaires; those that are off are left out."""
+def lit_scene(scene: Scene, luminaires: Sequence[Luminaire], shape: str = "faces") -> Scene:
+    """A copy of a scene with these luminaires; those that are off are left out. With shape "point" they have no body."""
     context = scene.context
     copy = Scene.from_bytes(context, scene.to_bytes(), keep_origin=1)
     loaded: dict[bytes, Distribution] = {}
@@ -156,7 +156,13 @@ def lit_scene(scene: Scene, luminaires: Sequence[Luminaire]) -> Scene:
         if data not in loaded:
             loaded[data] = Distribution.load_memory(context, data, lamp.product.format)
         copy.add_luminaire(
-            loaded[data], flux=lamp.flux, position=lamp.position, axis=lamp.axis, c0=lamp.c0, colour=lamp.colour
+            loaded[data],
+            flux=lamp.flux,
+            position=lamp.position,
+            axis=lamp.axis,
+            c0=lamp.c0,
+            colour=lamp.colour,
+            shape=shape,
         )
     return copy
 

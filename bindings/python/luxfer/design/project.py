@@ -10,8 +10,9 @@ from ..scene import Scene
 from . import emergency, fingerprint, scenes
 from . import energy as energies
 from .areas import Area
+from .arrange import Arrangement, Offer, Search, arrange
 from .check import Checked, Settings, check, with_energy
-from .luminaires import Luminaire, lit_scene
+from .luminaires import Luminaire, Product, lit_scene
 from .observers import Observers
 from .rooms import Room
 from .scenes import LightScene
@@ -124,6 +125,13 @@ class Project:
         if not self._limits_energy:
             return found
         return replace(found, checked=with_energy(found.checked, self.solved(found)._leni()))
+
+    def arrange(
+        self, offers: Sequence[Offer | Product], wishes: Wishes = Wishes(), search: Search = Search()
+    ) -> Arrangement:
+        """Finds places, product and dimmers together that are closest to the look of the present luminaires and meet
+        the requirements (see luxfer.design.arrange)."""
+        return arrange(self, offers, wishes, search)
 
     def solved(self, solution: Solution) -> Project:
         """The project with the luminaires of a solution."""

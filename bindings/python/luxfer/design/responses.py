@@ -77,12 +77,17 @@ def respond(scene: Scene, luminaires: Sequence[Luminaire], area: Area, paths: in
 
 
 def respond_all(
-    scene: Scene, luminaires: Sequence[Luminaire], areas: Sequence[Area], paths: int = 1024, seed: int = 1
+    scene: Scene,
+    luminaires: Sequence[Luminaire],
+    areas: Sequence[Area],
+    paths: int = 1024,
+    seed: int = 1,
+    shape: str = "faces",
 ) -> list[Response]:
-    """The responses of several areas."""
+    """The responses of several areas. For shape, see lit_scene."""
     if scene.counts.lights:
         raise ValueError(f"the scene has {scene.counts.lights} punctual lights of its own: give them as luminaires")
-    lit = lit_scene(scene, dimmed(luminaires, [1.0] * len(luminaires)))
+    lit = lit_scene(scene, dimmed(luminaires, [1.0] * len(luminaires)), shape)
     return [_respond(lit, len(luminaires), area, paths, seed + index) for index, area in enumerate(areas)]
 
 
@@ -111,7 +116,7 @@ def _goals(lit: Scene, count: int, grids: list[dict], paths: int, seed: int) -> 
     for grid in grids:
         lamps.add_grid(grid, 1.0)
     lamps.run(group="all", paths=paths, target_error=0.0, seed=seed)
-    matrix = np.array([[_lux(lamps.response(g, i).mean) for i in range(count)] for g in range(len(grids))])
+    matrix = math.pi * (lamps.responses(len(grids), count) @ LUMINANCE)
     return matrix, np.array([lamps.goal(g).background_lux for g in range(len(grids))])
 
 
@@ -131,6 +136,3 @@ def respond_glare(
     parts = zip(observers, np.split(sources, ends), np.split(veils, ends))
     return [GlareResponse(o, s, b) for o, s, b in parts]
 
-
-def _lux(radiance: Sequence[float]) -> float:
-    return math.pi * float(LUMINANCE @ np.asarray(radiance))

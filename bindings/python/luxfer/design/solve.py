@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from .areas import thinned
 from .check import Checked, Settings, check
 from .constraints import DIMMABLE, Model
 from .convex import Limits, box, min_violation, minimise
@@ -56,6 +57,9 @@ class Wishes:
     equal dimmers, because others would get shares of a level."""
     paths: int = 1024
     """Paths for each point that measure the responses."""
+    points: int = 0
+    """Points of each area, at most about, that measure the responses; 0: all. Fewer are faster, and need more rounds if
+    the darkest point is not among them. The check has all points."""
 
 
 @dataclass(frozen=True)
@@ -106,24 +110,23 @@ def solve(
     settings: Settings,
     wishes: Wishes = Wishes(),
     model: Model | None = None,
+    surfaces: NDArray | None = None,
 ) -> Solution:
     """Solves for the dimmers; those of the given luminaires are the photo's look. With the model of an earlier
-    solution for the same luminaires and areas (see measured_model) only the check traces light."""
+    solution for the same luminaires and areas (see measured_model) only the check traces light. With surfaces, their
+    brightness ratios belong to the look, too (see look.objective)."""
     if model is None:
         model = measured_model(scene, luminaires, requirements, areas, observers, floor_area, settings, wishes)
     groups = _groups(luminaires)
     if wishes.levels and not (groups.sum(axis=1) == 1).all():
         raise ValueError("levels need equal dimmers within each group: other luminaires would get shares of a level")
     photo, flux = np.array([lamp.dimmer for lamp in luminaires]), np.array([lamp.product.flux for lamp in luminaires])
-    solvable = [r for r in requirements if r.quantity in DIMMABLE and not (r.quantity == "flux" and r.is_minimum)]
-    margins = {
-        r: GLARE_MARGIN if r.quantity == "glare" else 0.0 if r.quantity in ("density", "flux") else MARGIN
-        for r in solvable
-    }
+    margins = first_margins(requirements)
+    solvable, aim = list(margins), objective(photo, flux, surfaces)
     tried: list[tuple[NDArray, Checked]] = []
     unknown: tuple[Finding, ...] = ()
     for turn in range(1, ROUNDS + 1):
-        dimmers = _dimmers(model, solvable, margins, photo, flux, groups, wishes)
+        dimmers, _ = nearest(model, margins, aim, groups, wishes)
         if dimmers is None:
             break
         checked = _checked(scene, luminaires, dimmers, requirements, areas, observers, floor_area, settings)
@@ -137,7 +140,7 @@ def solve(
         for finding in missed:
             margins[finding.requirement] += _more(finding)
     known = [r for r in solvable if r not in {f.requirement for f in unknown}]
-    hard, start = _box(groups, wishes)
+    hard, start = start_of(groups, wishes)
     closest, eased = relaxations(model, known, groups, hard, start)
     if not tried:
         dimmers = np.clip(closest, *(groups @ end for end in _range(groups, wishes)))
@@ -178,6 +181,8 @@ def measured_model(
     if missing:
         raise ValueError(f"requirements name {', '.join(sorted(missing))}, which is no area and no group of observers")
     chosen = [a for a in areas if a.name in wanted]
+    if wishes.points:
+        chosen = [thinned(a, wishes.points) for a in chosen]
     groups = [o for o in observers if o.name in rated]
     seed = settings.seed + SEED_OFFSET
     responses = respond_all(scene, luminaires, chosen, wishes.paths, seed) if chosen else []
@@ -221,42 +226,50 @@ def _range(groups: NDArray, wishes: Wishes) -> tuple[NDArray, NDArray]:
     return wishes.min_dimmer / least, high
 
 
-def _box(groups: NDArray, wishes: Wishes) -> tuple[Limits, NDArray]:
+def start_of(groups: NDArray, wishes: Wishes) -> tuple[Limits, NDArray]:
     """The range of the dimmers of groups, and a point inside."""
     low, high = _range(groups, wishes)
     return box(low - INSIDE, high + INSIDE), 0.5 * (low + high)
 
 
-def _dimmers(
+def first_margins(requirements: Sequence[Requirement]) -> dict[Requirement, float]:
+    """The requirements that dimmers can meet, with their first margins."""
+    solvable = [r for r in requirements if r.quantity in DIMMABLE and not (r.quantity == "flux" and r.is_minimum)]
+    return {
+        r: GLARE_MARGIN if r.quantity == "glare" else 0.0 if r.quantity in ("density", "flux") else MARGIN
+        for r in solvable
+    }
+
+
+def nearest(
     model: Model,
-    solvable: Sequence[Requirement],
     margins: dict[Requirement, float],
-    photo: NDArray,
-    flux: NDArray,
+    aim: tuple[NDArray, NDArray],
     groups: NDArray,
     wishes: Wishes,
-) -> NDArray | None:
-    """The dimmers closest to the look within the limits and margins; None if there are none."""
-    hard, start = _box(groups, wishes)
-    parts = [of_groups(model.limits(r, margins[r]), groups) for r in solvable]
-    limits = hard
+) -> tuple[NDArray | None, float]:
+    """The dimmers that minimise the aim (see look.objective) within the limits and margins, or None if there are none,
+    and the smallest share by which all limits can be missed together, negative if they can be met."""
+    hard, start = start_of(groups, wishes)
+    parts = [of_groups(model.limits(r, margin), groups) for r, margin in margins.items()]
+    limits, violation = hard, -1.0
     if parts:
         soft = joined(parts)
         violation, inside = min_violation(soft, hard, start)
         if violation > -INSIDE:
-            return None
+            return None, violation
         start, limits = inside.x[:-1], soft.joined(hard)
     # One more variable: the exposure.
-    wide = np.zeros((len(photo) + 1, groups.shape[1] + 1))
+    hessian, gradient = aim
+    wide = np.zeros((len(hessian), groups.shape[1] + 1))
     wide[:-1, :-1], wide[-1, -1] = groups, 1.0
-    hessian, gradient = objective(photo, flux)
     extended = limits.relaxed(np.zeros(len(limits.constant)))
     found = minimise(wide.T @ hessian @ wide, wide.T @ gradient, extended, np.append(start, 1.0))
     dimmers = np.clip(found.x[:-1], *_range(groups, wishes))
     if wishes.levels:
         stepped = _in_steps(dimmers, limits, hessian, gradient, groups, wishes)
-        return None if stepped is None else groups @ stepped
-    return groups @ dimmers
+        return (None if stepped is None else groups @ stepped), violation
+    return groups @ dimmers, violation
 
 
 def _in_steps(

@@ -1,0 +1,268 @@
+"""Light by a luminaire wherever it may hang: coefficients on a grid of places under the ceiling, interpolated between
+them.
+
+One scene holds each product in each direction at each place of the grid, and one set of paths for each point measures
+its light from all of them. Every pattern of luminaires is then a sum, and thousands can be compared without tracing
+anything anew. Interpolation makes single points a few per cent uncertain, so a pattern that is chosen by these numbers
+must be checked by its own paths (arrange.py does).
+
+The glare of an observer has no smooth coefficients: its direct part follows from the intensities towards the eye in
+closed form, for an opening that is small beside its distance and that nothing hides.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..photometry import Distribution
+from .areas import Area, Patch, thinned
+from .constraints import Model
+from .luminaires import Luminaire, Product
+from .motif import extents, is_wide
+from .responses import GlareResponse, Response, respond_all
+
+if TYPE_CHECKING:
+    from .motif import Placed
+    from .observers import Observers
+    from .rooms import Room
+
+#: Spacing of the places in metres, and largest number of them along a side. [convention]
+SPACING, MOST = 0.5, 16
+#: Points of an area at which its light is measured. [convention]
+POINTS = 16
+#: Paths for each eye: the light that is not direct is a difference, and so needs more of them. [convention]
+EYE_PATHS = 1 << 15
+#: Steps in degrees of the tables of intensities, around the axis and from it. [convention]
+STEP_C, STEP_GAMMA = 10.0, 2.5
+#: Relative difference of intensities below which a distribution is the same all around. [rounding]
+ROUND = 1e-3
+#: Smallest share of an eye's illuminance that is not direct, so that noise leaves the background above 0. [convention]
+INDIRECT = 0.02
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A product as a pattern uses it."""
+
+    product: Product
+    colour: tuple[float, float, float]
+    """Linear colour of its light."""
+    sides: NDArray[np.float64]
+    """Length and width of its opening in metres."""
+    intensities: NDArray[np.float64]
+    """Candela (around the axis, from the axis) at full power."""
+
+    @property
+    def is_round(self) -> bool:
+        """Whether a turn about the axis changes nothing."""
+        same = np.ptp(self.intensities, axis=0).max() <= ROUND * max(float(self.intensities.max()), 1e-300)
+        return bool(same) and abs(self.sides[0] - self.sides[1]) <= 0.01 * self.sides[0]
+
+    def key(self, angle: float) -> int:
+        """The direction, in whole degrees, whose coefficients hold for an angle of the long axis."""
+        return 0 if self.is_round else round(angle) % 180
+
+    def towards(self, c: NDArray[np.float64], gamma: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Intensity in candela, interpolated."""
+        x, y = (c % 360) / STEP_C, np.clip(gamma, 0, 180 - 1e-9) / STEP_GAMMA
+        i, j = x.astype(int), y.astype(int)
+        u, v, n = x - i, y - j, len(self.intensities)
+        low, high = self.intensities[i % n], self.intensities[(i + 1) % n]
+        take = lambda rows, k: np.take_along_axis(rows, k[..., None], -1)[..., 0]  # noqa: E731
+        a, b = ((1 - u) * take(low, k) + u * take(high, k) for k in (j, j + 1))
+        return (1 - v) * a + v * b
+
+
+def kind(room: Room, product: Product, colour: tuple[float, float, float]) -> Kind:
+    """A product with its table of intensities."""
+    sides = np.array(sorted((abs(v) for v in product.size[:2]), reverse=True))
+    with Distribution.load_memory(room.scene.context, product.photometry, product.format) as found:
+        around, down = np.arange(0, 360, STEP_C), np.arange(0, 180 + STEP_GAMMA, STEP_GAMMA)
+        table = np.array([[found.intensity(float(c), float(g)) for g in down] for c in around])
+        return Kind(product, colour, sides, table * product.flux / found.report.flux)
+
+
+def axis_of(room: Room, one: Kind, angle: float) -> NDArray[np.float64]:
+    """The direction C = 0 of a product whose long axis has an angle in the plan."""
+    t = math.radians(angle - (90 if is_wide(one.product) else 0))
+    return math.cos(t) * room.along + math.sin(t) * room.across
+
+
+def hung(room: Room, one: Kind, place: Sequence[float], angle: float, below: float, dimmer: float = 1) -> Luminaire:
+    """A luminaire under the ceiling."""
+    x, y, z = (float(v) for v in room.world([place], room.height - below)[0])
+    c0 = axis_of(room, one, angle)
+    return Luminaire(one.product, (x, y, z), dimmer, c0=(float(c0[0]), float(c0[1]), float(c0[2])), colour=one.colour)
+
+
+@dataclass(frozen=True)
+class Grid:
+    """Places along both sides of the ceiling at which a product in a direction was measured."""
+
+    along: NDArray[np.float64]
+    across: NDArray[np.float64]
+    first: int
+    """Column of the first place among all luminaires of the scene."""
+
+    def weights(self, place: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+        """Weights (count) by which the luminaires of the scene stand for one at a place."""
+        out = np.zeros(count)
+        both = np.outer(_cubic(self.along, place[0]), _cubic(self.across, place[1]))
+        out[self.first : self.first + both.size] = both.ravel()
+        return out
+
+
+def _cubic(values: NDArray[np.float64], x: float) -> NDArray[np.float64]:
+    """Weights of cubic interpolation between evenly spaced values (Catmull and Rom 1974); beyond the first and the last
+    one, the function continues straight."""
+    out = np.zeros(len(values))
+    if len(values) == 1:
+        return np.ones(1)
+    i = int(np.clip(np.searchsorted(values, x) - 1, 0, len(values) - 2))
+    u = float(np.clip((x - values[i]) / (values[i + 1] - values[i]), 0, 1))
+    before, after = u * (1 - u) ** 2 / -2, u * u * (1 - u) / -2
+    out[i : i + 2] = 1 - u * u * (2.5 - 1.5 * u), 1 - (1 - u) ** 2 * (1 + 1.5 * u)
+    for weight, outer, border, inner in ((before, i - 1, i, i + 1), (after, i + 2, i + 1, i)):
+        if 0 <= outer < len(values):
+            out[outer] += weight
+        else:
+            out[border] += 2 * weight
+            out[inner] -= weight
+    return out
+
+
+@dataclass(frozen=True)
+class Coefficients:
+    """Light at points of areas and at eyes, by luminaires at the places of grids."""
+
+    room: Room
+    kinds: Sequence[Kind]
+    grids: dict[tuple[int, int], Grid]
+    """By number of the kind and its direction."""
+    count: int
+    responses: dict[str, Response]
+    """By the names of areas."""
+    veils: dict[str, NDArray[np.float64]]
+    """Luminance of the background (eyes, luminaires), by the names of observers."""
+    observers: Sequence[Observers]
+    below: float
+    maintenance: float
+
+    def model(self, number: int, lamps: Placed) -> Model:
+        """What requirements are evaluated with, for a pattern of one kind of luminaire."""
+        one = self.kinds[number]
+        keys = [one.key(float(a)) for a in lamps.angles]
+        mix = np.stack([self.grids[number, k].weights(p, self.count) for k, p in zip(keys, lamps.places)], axis=1)
+        luminaires = [
+            hung(self.room, one, (float(p[0]), float(p[1])), float(a), self.below)
+            for p, a in zip(lamps.places, lamps.angles)
+        ]
+        responses = {n: replace(r, matrix=r.matrix @ mix) for n, r in self.responses.items()}
+        glare = {
+            o.name: GlareResponse(o, _sources(self.room, one, luminaires, o)[0], self.veils[o.name] @ mix)
+            for o in self.observers
+        }
+        return Model(luminaires, responses, glare, self.maintenance, self.room.floor_area)
+
+
+def measure(
+    room: Room,
+    kinds: Sequence[Kind],
+    angles: Sequence[Sequence[float]],
+    areas: Sequence[Area],
+    observers: Sequence[Observers],
+    below: float,
+    maintenance: float,
+    seed: int,
+    paths: int = 1024,
+) -> Coefficients:
+    """Measures the coefficients of each kind in its directions."""
+    grids: dict[tuple[int, int], Grid] = {}
+    luminaires: list[Luminaire] = []
+    for number, (one, wanted) in enumerate(zip(kinds, angles)):
+        for key in dict.fromkeys(one.key(a) for a in wanted):
+            half = extents(np.array([float(key)]), one.sides[None])[0]
+            along, across = (_places(side, h) for side, h in zip((room.length, room.width), half))
+            grids[number, key] = Grid(along, across, len(luminaires))
+            luminaires += [hung(room, one, (a, b), key, below) for a in along for b in across]
+    eyes = [_eyes(o) for o in observers]
+    chosen = [thinned(a, POINTS) for a in areas]
+    # Without bodies: openings at all places of the grid would cover the ceiling.
+    found = respond_all(room.scene, luminaires, chosen, paths, seed, "point") if chosen else []
+    light = respond_all(room.scene, luminaires, eyes, EYE_PATHS, seed + 1, "point") if eyes else []
+    responses = {r.area.name: r for r in found}
+    veils = {}
+    for o, seen in zip(observers, light):
+        direct = np.zeros_like(seen.matrix)
+        for (number, _), grid in grids.items():
+            columns = slice(grid.first, grid.first + len(grid.along) * len(grid.across))
+            direct[:, columns] = _sources(room, kinds[number], luminaires[columns], o)[1]
+        rest = np.maximum(seen.matrix - direct, INDIRECT * seen.matrix)
+        veils[o.name] = np.maximum(rest, 1e-9) / math.pi
+    return Coefficients(room, kinds, grids, len(luminaires), responses, veils, observers, below, maintenance)
+
+
+def _places(side: float, half: float) -> NDArray[np.float64]:
+    """Places along a side at which an opening of that half length fits; the middle if it does not."""
+    if side <= 2 * half:
+        return np.array([side / 2])
+    count = min(MOST, max(2, 1 + math.ceil((side - 2 * half) / SPACING)))
+    return np.linspace(half, side - half, count)
+
+
+def _eyes(observers: Observers) -> Area:
+    """The eyes of observers as points with vertical planes."""
+    side = 1e-3 * np.array([0.0, 1.0, 0.0])
+    patches = []
+    for eye, view in zip(observers.positions, _views(observers)):
+        level = 1e-3 * np.cross(side / 1e-3, view)
+        corner = eye - 0.5 * (side + level)
+        patches.append(Patch(corner, level, side, np.asarray(view, float), 1, 1, np.ones((1, 1), bool)))
+    return Area(f"\0{observers.name}", "eyes", tuple(patches), 0.0, ())
+
+
+def _views(observers: Observers) -> NDArray[np.float64]:
+    """Unit vectors along which observers look."""
+    return observers.directions / np.linalg.norm(observers.directions, axis=1, keepdims=True)
+
+
+def _sources(
+    room: Room, one: Kind, luminaires: Sequence[Luminaire], observers: Observers
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """L² ω / p² and direct illuminance in lux (observers, luminaires) at full power, in closed form."""
+    places = np.array([lamp.position for lamp in luminaires])
+    firsts = np.array([lamp.c0 for lamp in luminaires])
+    to_lamp = places[None] - observers.positions[:, None]
+    distance = np.linalg.norm(to_lamp, axis=2)
+    to_lamp = to_lamp / distance[..., None]
+    down = np.clip(to_lamp[..., 1], 0, 1)  # cosine at the luminaire, which shines down
+    # C grows anticlockwise as seen from above, so C = 90 lies along up × c0.
+    seconds = np.cross([0.0, 1.0, 0.0], firsts)
+    c = np.degrees(np.arctan2(-(to_lamp * seconds).sum(axis=2), -(to_lamp * firsts).sum(axis=2)))
+    candela = one.towards(c, np.degrees(np.arccos(down)))
+    ahead = np.einsum("eld,ed->el", to_lamp, _views(observers))
+    direct = candela * np.maximum(ahead, 0) / distance**2
+    area = float(one.sides.prod())
+    if area <= 0:
+        return np.zeros_like(direct), direct
+    seen = (ahead > 0) & (down > 1e-3)
+    index = position_index(np.clip(ahead, 1e-6, 1), to_lamp[..., 1])
+    # L = I / (A cos), ω = A cos / d².
+    glare = candela**2 / (area * np.maximum(down, 1e-3) * distance**2 * index**2)
+    return np.where(seen, glare, 0.0), direct
+
+
+def position_index(ahead: NDArray[np.float64], above: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Guth's position index for sources above a level line of sight, whose unit vectors have these components along it
+    and upwards. [convention: CIE 117]"""
+    sigma = np.degrees(np.arccos(ahead))
+    sine = np.sqrt(np.maximum(1 - ahead**2, 1e-12))
+    tau = np.degrees(np.arccos(np.clip(above / sine, -1, 1)))
+    first = (35.2 - 0.31889 * tau - 1.22 * np.exp(-2 * tau / 9)) * 1e-3 * sigma
+    return np.exp(first + (21 + 0.26667 * tau - 0.002963 * tau**2) * 1e-5 * sigma**2)

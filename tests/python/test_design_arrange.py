@@ -1,0 +1,152 @@
+"""Patterns of luminaires as an unknown: motifs in closed form, coefficients against paths, and designs whose answer is
+known."""
+
+import unittest
+from dataclasses import replace
+
+from support import Case, context, luxfer, np
+from test_design import HEIGHT, LENGTH, WIDTH, at_least, at_most, box, panel
+
+from luxfer import design
+from luxfer.design import areas, coefficients, likeness, motif, observers
+from luxfer.design.measure import measure, rate
+
+
+def room() -> design.Room:
+    return design.Room.find(box())
+
+
+def project(columns: int = 2, rows: int = 2, dimmer: float = 1.0) -> design.Project:
+    """A box with rows of lamps, as if a photo had shown them, and a desk."""
+    found = room()
+    lamps = design.layout(found, panel(1000.0), columns, rows)
+    desk = areas.task(found, "desk", (1.2, 1.0, 2.8, 2.0), 0.75)
+    settings = design.Settings(maintenance=0.8, samples=64, max_samples=1024)
+    return design.Project(found, design.dimmed(lamps, [dimmer] * len(lamps)), (desk,), settings=settings)
+
+
+class Motifs(Case):
+    def test_rows_of_lamps_repeat_along_both_sides(self):
+        found = motif.find(room(), design.layout(room(), panel(), 4, 3))
+        lengths = sorted(float(np.linalg.norm(v)) for v in found.lattice.T)
+        np.testing.assert_allclose(lengths, sorted((LENGTH / 4, WIDTH / 3)), atol=1e-5)
+        self.assertEqual((len(found.cells), found.regular), (1, (True, True)))
+        self.assertAlmostEqual(found.spacing, np.sqrt(LENGTH * WIDTH / 12), places=5)
+
+    def test_the_pattern_itself_gives_its_lamps_back(self):
+        lamps = design.layout(room(), panel(), 4, 3)
+        placed = motif.find(room(), lamps).placed(room())
+        expected = room().plan([lamp.position for lamp in lamps])
+        order = np.lexsort(np.round(placed.places, 3).T)
+        np.testing.assert_allclose(placed.places[order], expected[np.lexsort(np.round(expected, 3).T)], atol=1e-5)
+
+    def test_half_the_size_has_four_times_the_lamps(self):
+        found = motif.find(room(), design.layout(room(), panel(), 4, 3))
+        # Shifted by half a period along one of its vectors, no lamp lies on the border.
+        shifted = [found.placed(room(), scale=0.5, offset=o) for o in ((0.5, 0.0), (0.0, 0.5))]
+        smaller = max(shifted, key=lambda p: len(p.places))
+        self.assertEqual(len(smaller.places), 48)
+        photo, now = (likeness.statistics(p, LENGTH * WIDTH) for p in (found.placed(room()), smaller))
+        # The luminous share grows by 4, the size over the spacing by 2; form, rows and regularity stay.
+        np.testing.assert_allclose(now - photo, (np.log(4), np.log(2), 0, 0, 0), atol=1e-4)
+        self.assertAlmostEqual(likeness.pattern_distance(photo, now), np.sqrt(5 / 5) * np.log(2), places=4)
+
+    def test_a_turn_turns_the_lamps_too(self):
+        lamp = design.Product.panel(context(), 1.2, 0.2, 3000.0)
+        found = motif.find(room(), design.layout(room(), lamp, 1, 1))
+        before, after = (found.placed(room(), turn=t).angles[0] for t in (0, 90))
+        self.assertAlmostEqual((after - before) % 180, 90)
+
+    def test_lamps_that_the_border_cuts_do_not_count(self):
+        lamps = list(design.layout(room(), panel(), 2, 2))
+        x, y, _ = lamps[0].position
+        cut = replace(lamps[0], product=design.Product.panel(context(), 0.3, 0.1, 500.0), position=(x, y, 0.06))
+        self.assertEqual(len(motif.find(room(), [*lamps, cut]).cells), 1)
+        with self.assertRaisesRegex(ValueError, "no lamp of the photo shines"):
+            motif.find(room(), design.dimmed(lamps, [0.0] * 4))
+
+
+class Coefficients(Case):
+    """What is interpolated, against paths of its own."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.room = room()
+        cls.desk = areas.task(cls.room, "desk", (1.2, 1.0, 2.8, 2.0), 0.75)
+        cls.eyes = observers.at(cls.room, "eye", [(0.4, 1.5)], [(3.0, 1.5)])
+        cls.kind = coefficients.kind(cls.room, panel(), (1.0, 1.0, 1.0))
+        angles = [[0.0]]
+        cls.table = coefficients.measure(cls.room, [cls.kind], angles, [cls.desk], [cls.eyes], 0.01, 0.8, 5)
+        # Places between those of the grid, where interpolation has its largest error.
+        places = np.array([[1.13, 0.83], [2.61, 2.07]])
+        ones = np.ones((2, 3))
+        cls.lamps = motif.Placed(places, np.zeros(2), np.ones(2), ones, np.tile(cls.kind.sides, (2, 1)))
+        cls.hung = [coefficients.hung(cls.room, cls.kind, p, 0.0, 0.01) for p in places]
+        cls.model = cls.table.model(0, cls.lamps)
+
+    def test_the_mean_of_an_area(self):
+        true = 0.8 * measure(design.lit_scene(self.room.scene, self.hung), self.desk, 1024).mean.value
+        found = self.model.value(at_least("mean", 1), np.ones(2))
+        self.assertLess(abs(found / true - 1), 0.03)
+
+    def test_glare(self):
+        true = rate(design.lit_scene(self.room.scene, self.hung), self.eyes, 1 << 14)[0].ugr
+        found = self.model.value(at_most("glare", 19, "eye"), np.ones(2))
+        self.assertLess(abs(found - true), 0.5, "UGR")
+
+    def test_the_position_index_of_guth(self):
+        # The first column of Guth's table (CIE 117): sources straight above the line of sight, by height over distance.
+        for height, expected in ((0.0, 1.0), (0.5, 2.86), (1.0, 7.0)):
+            ahead, above = np.array([1.0, height]) / np.hypot(1.0, height)
+            found = float(coefficients.position_index(ahead, above))
+            self.assertLess(abs(found / expected - 1), 0.05, f"H / R = {height}: {found}")
+
+
+class Arrangements(Case):
+    def test_a_design_that_may_stay_stays(self):
+        lit = project().requiring(at_least("mean", 20), at_most("density", 20))
+        found = lit.arrange([panel(1000.0)])
+        self.assertTrue(found.feasible, found.explanation())
+        self.assertEqual((found.scale, found.turn, found.offset, len(found.project.luminaires)), (1, 0, (0, 0), 4))
+        self.assertLess(found.look.total, 0.02, str(found.look))
+        np.testing.assert_allclose([lamp.dimmer for lamp in found.project.luminaires], 1, atol=0.02)
+        self.assertEqual(found.prices, ())
+
+    def test_more_light_than_the_lamps_have_needs_more_lamps(self):
+        lit = project().requiring(at_least("mean", 600))
+        offers = [panel(1000.0), panel(1500.0)]
+        search = design.Search(keep_out=((0.0, 0.0, 1.0, WIDTH),))
+        found = lit.arrange(offers, design.Wishes(max_dimmer=1), search)
+        self.assertTrue(found.feasible, found.explanation())
+        lamps = found.project.luminaires
+        self.assertGreater(sum(lamp.product.flux for lamp in lamps), 4000)
+        corners = np.array([found.project.room.plan([lamp.position])[0] for lamp in lamps])
+        self.assertGreaterEqual(corners[:, 0].min(), 1.15 - 1e-6, "0.15 m is half a panel")
+        self.assertTrue((corners[:, 0] <= LENGTH - 0.15 + 1e-6).all())
+        self.assertTrue(all(HEIGHT - 0.1 < lamp.position[1] < HEIGHT for lamp in lamps))
+        self.assertEqual(found.prices[0][0].quantity, "mean")
+        self.assertIn("due to 'mean of desk at least 600 lx'", found.explanation())
+        # The design is the same again.
+        again = lit.arrange(offers, design.Wishes(max_dimmer=1), search)
+        self.assertEqual([lamp.dimmer for lamp in again.project.luminaires], [lamp.dimmer for lamp in lamps])
+        self.assertEqual([lamp.position for lamp in again.project.luminaires], [lamp.position for lamp in lamps])
+
+    def test_what_no_pattern_meets_is_explained(self):
+        lit = project().requiring(at_least("mean", 60), at_most("density", 0.5))
+        small = design.Search(scales=(0.7, 1.0), turns=(0.0,), offsets=(0.0,))
+        found = lit.arrange([panel(1000.0)], design.Wishes(max_dimmer=1), small)
+        self.assertFalse(found.feasible)
+        self.assertRegex(found.explanation(), r"none of 2 patterns .*'density at most 0.5 W/m²' becomes at most [\d.]+")
+
+    def test_wrong_wishes_are_named(self):
+        lit = project().requiring(at_least("mean", 20))
+        with self.assertRaisesRegex(ValueError, "offers is empty"):
+            lit.arrange([])
+        with self.assertRaisesRegex(ValueError, "keep-out.*max_lamps = 80"):
+            lit.arrange([panel()], search=design.Search(keep_out=((0, 0, LENGTH, WIDTH),)))
+        with self.assertRaisesRegex(ValueError, "kelvin = "):
+            lit.arrange([design.Offer(panel(), (4000, 3000))])
+
+
+if __name__ == "__main__":
+    unittest.main()
