@@ -32,7 +32,7 @@ pub struct Emission {
     /// whole lamps, only the lit share is compared.
     pub error: f64,
     /// If the texture by the law that the lamps suggest was so wrong that other laws were tried
-    /// ([`super::try_other_laws`]), the error of that first texture. Otherwise `None`.
+    /// ([`super::other_laws`]), the error of that first texture. Otherwise `None`.
     pub first_error: Option<f64>,
     /// Sampling error of the exemplar's statistics, which arises because the exemplar shows only a part of its
     /// ceiling. No method can be expected to have a smaller `error`. The estimate is the root mean square relative

@@ -174,7 +174,7 @@ impl Analysis {
             self.set(Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar))));
             return Ok(());
         }
-        if evidence.whole.len() < 2 || seen < MIN_LAMP_SHARE * (seen + endless) {
+        if evidence.whole.len() + evidence.completed.len() < 2 || seen < MIN_LAMP_SHARE * (seen + endless) {
             return Ok(());
         }
         let score = |law: Law| score(exemplar, &evidence, law);

@@ -30,6 +30,7 @@ from . import coefficients, likeness, motif
 from .explain import Relaxation, relaxations
 from .likeness import Likeness
 from .look import distance, objective
+from .luminaires import dimmed
 from .measure import measure
 from .motif import Motif, Placed
 from .solve import SEED_OFFSET, Solution, Wishes, first_margins, nearest, solve, start_of
@@ -368,10 +369,9 @@ def _solved(task: _Task, candidate: Candidate) -> Solution:
     model = task.table.model(candidate.offer, candidate.lamps)
     photo, rows, _, _ = _aim(task, candidate, model)
     project, below = task.project, task.table.below
-    lamps = [
-        replace(coefficients.hung(project.room, task.kinds[candidate.offer], place, float(angle), below), dimmer=float(p))
-        for place, angle, p in zip(candidate.lamps.places, candidate.lamps.angles, photo)
-    ]
+    kind, placed = task.kinds[candidate.offer], zip(candidate.lamps.places, candidate.lamps.angles)
+    hung = [coefficients.hung(project.room, kind, place, float(angle), below) for place, angle in placed]
+    lamps = dimmed(hung, photo.tolist())
     return solve(
         project.room.scene,
         lamps,

@@ -145,7 +145,8 @@ def dimmed(luminaires: Sequence[Luminaire], dimmers: Sequence[float]) -> list[Lu
 
 
 def lit_scene(scene: Scene, luminaires: Sequence[Luminaire], shape: str = "faces") -> Scene:
-    """A copy of a scene with these luminaires; those that are off are left out. With shape "point" they have no body."""
+    """A copy of a scene with these luminaires; those that are off are left out. With the shape "point" they have no
+    body."""
     context = scene.context
     copy = Scene.from_bytes(context, scene.to_bytes(), keep_origin=1)
     loaded: dict[bytes, Distribution] = {}
