@@ -185,6 +185,7 @@ pub unsafe extern "C" fn luxfer_lamps_start(
     enter(lamps, |stage| {
         let params = params::read(params)?;
         params.check()?;
+        params.tracing().check()?;
         let inputs = stage.inputs();
         let (object, material) = need(&inputs.emission, "luxfer_lamps_set_scene")?.clone();
         if inputs.goals.is_empty() {

@@ -25,28 +25,36 @@ const MAX_SHARING: usize = 8;
 const HEADER_BYTES: usize = 128;
 
 /// Joins the pieces of the profile in the segments of a JPEG (ICC.1:2022, annex B.4) in the order of their numbers;
-/// `None` if there is no profile.
+/// `None` if there is no profile. If pieces are missing, or occur twice, the profile is empty, hence unusable.
 pub fn of_segments<'a>(segments: impl Iterator<Item = (u8, &'a [u8])>) -> Result<Option<Cow<'a, [u8]>>> {
     let mut pieces = Vec::new();
     for (marker, segment) in segments {
         if marker == 0xe2
-            && let Some([number, _, piece @ ..]) = segment.strip_prefix(b"ICC_PROFILE\0")
+            && let Some([number, count, piece @ ..]) = segment.strip_prefix(b"ICC_PROFILE\0")
         {
-            try_push(&mut pieces, (*number, piece))?;
+            try_push(&mut pieces, (*number, *count, piece))?;
         }
     }
-    pieces.sort_by_key(|piece| piece.0);
-    if let [(_, piece)] = pieces[..] {
-        return Ok(Some(piece.into()));
+    if pieces.is_empty() {
+        return Ok(None);
     }
-    let len = pieces.iter().map(|piece| piece.1.len()).sum();
-    let mut profile = try_vec(len, 0u8)?;
+    pieces.sort_by_key(|piece| piece.0);
+    let is_complete = pieces.iter().zip(1..).all(|((number, count, _), k)| {
+        let is_alone = pieces.len() == 1 && *count <= 1;
+        is_alone || (*number as usize, *count as usize) == (k, pieces.len())
+    });
+    match pieces[..] {
+        _ if !is_complete => return Ok(Some((&[][..]).into())),
+        [(_, _, piece)] => return Ok(Some(piece.into())),
+        _ => {}
+    }
+    let mut profile = try_vec(pieces.iter().map(|piece| piece.2.len()).sum(), 0u8)?;
     let mut rest = &mut profile[..];
-    for (_, piece) in &pieces {
+    for (_, _, piece) in &pieces {
         rest[..piece.len()].copy_from_slice(piece);
         rest = &mut rest[piece.len()..];
     }
-    Ok((len > 0).then_some(profile.into()))
+    Ok(Some(profile.into()))
 }
 
 /// Unpacks the profile in the `iCCP` chunk of a PNG: a name, a zero, the compression method, and deflated data. `None`

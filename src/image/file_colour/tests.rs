@@ -303,6 +303,24 @@ fn damaged_profiles_are_ignored_and_bombs_are_not_unpacked() {
 }
 
 #[test]
+fn pieces_of_a_profile_are_joined_by_number_and_must_be_complete() {
+    let piece = |number: u8, count: u8, data: &[u8]| [b"ICC_PROFILE\0", &[number, count], data].concat();
+    let joined = |pieces: &[Vec<u8>]| {
+        of_segments(pieces.iter().map(|piece| (0xe2, &piece[..]))).unwrap().map(|profile| profile.into_owned())
+    };
+    let [one, two] = [piece(1, 2, b"ab"), piece(2, 2, b"cd")];
+    assert_eq!(joined(&[two.clone(), one.clone()]).unwrap(), b"abcd");
+    assert_eq!(joined(&[piece(1, 1, b"ab")]).unwrap(), b"ab");
+    assert_eq!(joined(&[]), None);
+    // A piece is missing, occurs twice, or states another number of pieces: the profile is unusable.
+    for pieces in [vec![one.clone()], vec![two.clone()], vec![one.clone(), one.clone()], vec![one, piece(2, 3, b"cd")]]
+    {
+        assert_eq!(joined(&pieces).unwrap(), b"");
+    }
+    assert!(matches!(super::icc::space(b"").unwrap(), super::space::Space::Unusable));
+}
+
+#[test]
 fn adobe_rgb_is_known_by_its_exif_notes() {
     // A TIFF structure with directories at fixed offsets: the EXIF directory at 26, the interoperability directory at
     // 56.

@@ -93,7 +93,7 @@ struct Importer<'a> {
     /// Index of the default material, which is created for the first primitive without a material.
     default_material: Option<usize>,
     /// Copies of materials multiplied by a vertex colour: index of the original, the colour, and index of the copy.
-    tinted: Vec<(usize, [f32; 4], usize)>,
+    tinted: Vec<(usize, Vec4, usize)>,
     /// Indices in the file of the IES profiles read so far. Profile `profiles[i]` is distribution `i` of the scene.
     profiles: Vec<usize>,
     /// Whether `is_point` is set for all luminaires, even for those whose files state a luminous size.
@@ -346,17 +346,17 @@ impl Importer<'_> {
     fn tint(&mut self, material: usize, colours: Vec<[f32; 4]>) -> Result<(usize, Vec<Vec4>)> {
         let clamped = |colour: [f32; 4]| Vec4::from(colour).clamp(Vec4::ZERO, Vec4::ONE);
         let Some((&first, rest)) = colours.split_first() else { return Ok((material, Vec::new())) };
-        if rest.iter().any(|colour| *colour != first) {
+        let colour = clamped(first);
+        if rest.iter().any(|other| clamped(*other) != colour) {
             self.budget.keep(size_of_val(&colours[..]) as u64)?;
             return Ok((material, map_indexed(colours, |_, colour| clamped(colour))?));
         }
-        if first == [1.0; 4] {
+        if colour == Vec4::ONE {
             return Ok((material, Vec::new()));
         }
-        if let Some((.., known)) = self.tinted.iter().find(|(of, colour, _)| (*of, *colour) == (material, first)) {
+        if let Some((.., known)) = self.tinted.iter().find(|(of, tint, _)| (*of, *tint) == (material, colour)) {
             return Ok((*known, Vec::new()));
         }
-        let colour = clamped(first);
         let plain = &self.scene.materials[material];
         let product = Material {
             base_color: plain.base_color * colour.truncate(),
@@ -365,7 +365,7 @@ impl Importer<'_> {
         };
         self.scene.materials.push(product);
         let index = self.scene.materials.len() - 1;
-        self.tinted.push((material, first, index));
+        self.tinted.push((material, colour, index));
         Ok((index, Vec::new()))
     }
 

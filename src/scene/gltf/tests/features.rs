@@ -401,6 +401,10 @@ fn one_colour_of_all_vertices_becomes_part_of_the_material() {
     assert_eq!(scene.materials[0].base_color, Vec3::new(0.5, 1.0, 1.0));
     assert!(scene.unrendered.is_empty());
     assert!(scene.meshes[0].colours.is_empty());
+    // Colours above white are white, which changes no material.
+    let scene = with(&[2.0, 1.0, 1.5, 1.0, 1.0, 1.0, 3.0, 1.0, 2.0], "VEC3");
+    assert_eq!((scene.materials.len(), scene.meshes[0].material), (1, 0));
+    assert!(scene.meshes[0].colours.is_empty());
     // Colours that differ between vertices stay with the vertices, and survive an export and import.
     let scene = with(&[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 1.0], "VEC3");
     assert_eq!((scene.materials.len(), scene.meshes[0].material, scene.unrendered.len()), (1, 0, 0));
