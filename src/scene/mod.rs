@@ -6,6 +6,7 @@
 
 mod brightness;
 pub mod camera;
+mod emission;
 mod fingerprint;
 pub mod gltf;
 pub mod light;

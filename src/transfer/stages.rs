@@ -328,14 +328,7 @@ impl LitScene {
     /// coloured lamps.
     pub fn in_white(&self) -> Self {
         let mut scene = (*self.scene).clone();
-        let material = &mut scene.materials[self.placed.material];
-        if let Some(map) = material.emission_texture {
-            let tint = material.emission;
-            for pixel in scene.textures[map.texture].image.data.chunks_exact_mut(3) {
-                pixel.fill(crate::image::colour::luminance(Vec3::from_slice(pixel) * tint));
-            }
-            material.emission = Vec3::ONE;
-        }
+        scene.whiten_emission(self.placed.material);
         Self { scene: Arc::new(scene), ..self.clone() }
     }
 }
