@@ -1,6 +1,7 @@
 //! Classifies the components by role: whole lamp, part of a lamp, or a light that runs through the exemplar.
 
 use super::components::{Component, Components};
+use std::ops::RangeInclusive;
 
 /// A light cut by the border resembles a whole lamp if its sides are at most this many times the whole lamp's sides.
 /// [judged on 5 photos]
@@ -10,9 +11,9 @@ const MAX_CUT_RATIO: f64 = 1.35;
 /// cuts exceeds the limit. A disc does not exceed it as long as less than about a hundredth of its area is cut off.
 /// [judged on 5 photos]
 const MAX_WHOLE_CONTACT: f64 = 0.6;
-/// A light runs through the exemplar if it spans at least this share of the row or of the column through its centre.
-/// Only the part of the row or column that the photo shows is counted. Less than 1 is asked for because masks fray at
-/// the border of the photo. [convention: 3 pixels in 100]
+/// A light runs through the exemplar along an axis if it leaves hardly any room at its two ends: of the pixels that the
+/// photo shows in the rows (columns) of the light, at least this share lies between its first and its last column (row).
+/// Less than 1 is asked for because masks fray at the border of the photo. [convention: 3 pixels in 100]
 const MIN_THROUGH_SPAN: f64 = 0.97;
 
 /// The role of a component of the exemplar.
@@ -78,12 +79,14 @@ fn contacts(components: &Components, shown: &[bool], width: usize, height: usize
     contacts
 }
 
-/// Whether a component spans nearly the whole row or column through its centre, as far as the photo shows that row or
-/// column.
+/// Whether a component reaches from one border of the visible region to the opposite one, along x or along y.
 fn runs_through(c: &Component, shown: &[bool], width: usize, height: usize) -> bool {
-    let (x, y) = ((c.centre.x as usize).min(width - 1), (c.centre.y as usize).min(height - 1));
-    let row = (0..width).filter(|u| shown[y * width + u]).count();
-    let column = (0..height).filter(|v| shown[v * width + x]).count();
-    let [across, down] = c.size().map(|s| s as f64);
-    across >= MIN_THROUGH_SPAN * row as f64 || down >= MIN_THROUGH_SPAN * column as f64
+    let count = |xs: RangeInclusive<usize>, ys: RangeInclusive<usize>| {
+        let row = |y: usize| shown[y * width..][xs.clone()].iter().filter(|shown| **shown).count();
+        ys.map(row).sum::<usize>() as f64
+    };
+    let [columns, rows] = [0, 1].map(|axis| c.min[axis]..=c.max[axis]);
+    let inside = count(columns.clone(), rows.clone());
+    inside >= MIN_THROUGH_SPAN * count(0..=width - 1, rows)
+        || inside >= MIN_THROUGH_SPAN * count(columns, 0..=height - 1)
 }

@@ -41,6 +41,18 @@ fn a_rectangle_that_a_slanted_border_cuts_is_whole_in_the_texture() {
 }
 
 #[test]
+fn a_lamp_in_a_corner_of_the_photo_does_not_run_through_it() {
+    // Five dark pixels lie to the left of the lamp. The slanted border cuts its right end, in the lower rows farther to
+    // the right, so that the lamp is as long as the row through its centre.
+    let design = slanted(|x, y| (5.0..100.0).contains(&x) && y < 8.0);
+    let lamps = inner(&continued(&design).luminaires, 500, 400);
+    assert!(lamps.len() >= 4, "{}", lamps.len());
+    for lamp in lamps {
+        assert!((lamp.size - DVec2::new(76.0, 8.0)).abs().max_element() < 2.0, "{}", lamp.size);
+    }
+}
+
+#[test]
 fn a_lamp_whose_visible_part_is_no_part_of_a_rectangle_keeps_its_outline() {
     // A triangle with its tip at the top and a horizontal base. The border of the photo cuts its right side off.
     let is_lamp = |x: f64, y: f64| (y - 10.0) * 2.0 > (x - 80.0).abs() && (10.0..45.0).contains(&y);
