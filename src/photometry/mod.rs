@@ -13,6 +13,7 @@
 //! Not modelled: spectra and colour rendering; maintenance; bodies of luminaires, and luminance that varies over a
 //! luminous face.
 
+mod clock;
 pub mod faces;
 pub mod false_colour;
 pub mod glare;
@@ -22,8 +23,12 @@ pub mod ldt;
 pub mod luminaire;
 pub mod opening;
 pub mod presets;
+mod sum;
+mod symmetry;
 pub mod temperature;
 mod text_lines;
+pub mod tm33;
+mod xml;
 
 pub use luminaire::Luminaire;
 
