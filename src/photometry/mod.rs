@@ -2,8 +2,8 @@
 //!
 //! [`temperature`] converts between colours and correlated colour temperatures, and finds the blackbody light closest
 //! to a target. [`glare`] rates the discomfort glare of a luminance image (UGR, CIE 117). [`luminaire`] holds a
-//! measured luminous intensity distribution, read from and written to IES LM-63 ([`ies`]) and EULUMDAT ([`ldt`])
-//! files. [`opening`] is the shape of a luminaire's luminous area, and [`faces`] its triangles. [`presets`] lists
+//! measured luminous intensity distribution, read from and written to files of IES LM-63 ([`ies`]), EULUMDAT ([`ldt`]),
+//! TM-33 ([`tm33`]) and GLDF ([`gldf`]). [`opening`] is the shape of a luminaire's luminous area, and [`faces`] its triangles. [`presets`] lists
 //! requirements of EN 12464-1 for common rooms. [`false_colour`] shows luminance and illuminance by a scale of
 //! colours.
 //!
@@ -16,7 +16,9 @@
 mod clock;
 pub mod faces;
 pub mod false_colour;
+mod format;
 pub mod glare;
+pub mod gldf;
 mod glyphs;
 pub mod ies;
 pub mod ldt;
@@ -30,6 +32,7 @@ mod text_lines;
 pub mod tm33;
 mod xml;
 
+pub use format::{File, Format};
 pub use luminaire::Luminaire;
 
 use crate::image::colour;
