@@ -1,7 +1,7 @@
 //! The formats of luminaire files: which one a file has, and reading and writing each.
 
 use super::clock::Moment;
-use super::luminaire::Luminaire;
+use super::luminaire::{File, Luminaire};
 use super::{gldf, ies, ldt, tm33};
 use crate::error::{Error, Result};
 use std::path::Path;
@@ -19,12 +19,14 @@ pub enum Format {
     Gldf,
 }
 
-/// A luminaire file that was read.
-#[derive(Clone, Debug, PartialEq)]
-pub struct File {
-    pub luminaire: Luminaire,
-    /// Number of variants of the product in the file. It is 1 for all formats but GLDF.
-    pub variants: usize,
+/// Separates the name of a variant from a path, such as `lamp.gldf#black`. Only after `.gldf` does `#` have this
+/// meaning.
+pub fn split_variant(path: &str) -> (&str, Option<&str>) {
+    const MARK: &str = ".gldf#";
+    match path.to_ascii_lowercase().find(MARK) {
+        Some(at) => (&path[..at + MARK.len() - 1], Some(&path[at + MARK.len()..])),
+        None => (path, None),
+    }
 }
 
 impl Format {
@@ -61,6 +63,15 @@ impl Format {
         }
     }
 
+    /// Returns the format of a file whose extension names this format. The content decides if it has a mark: files
+    /// often have the extension of another format.
+    pub fn confirmed(self, bytes: &[u8]) -> Self {
+        match Self::of_content(bytes) {
+            found @ (Self::Tm33 | Self::Gldf) => found,
+            Self::Ies | Self::Ldt => self,
+        }
+    }
+
     /// Reads a file of this format. `variant` chooses a variant of a GLDF container by its name, its id or its index
     /// from 0; without it, the first is read.
     ///
@@ -73,10 +84,10 @@ impl Format {
         let luminaire = match self {
             Self::Ies => ies::read(bytes)?,
             Self::Ldt => ldt::read(bytes)?,
-            Self::Tm33 => tm33::read(bytes)?,
+            Self::Tm33 => return tm33::read_file(bytes),
             Self::Gldf => return gldf::read(bytes, variant),
         };
-        Ok(File { luminaire, variants: 1 })
+        Ok(File { luminaire, variants: 1, emitters: 1 })
     }
 
     /// Writes a luminaire as a file of this format.
@@ -109,7 +120,7 @@ mod tests {
             let bytes = format.write(&l).unwrap();
             assert_eq!(Format::of_content(&bytes), format);
             let file = format.read(&bytes, None).unwrap();
-            assert_eq!((file.luminaire.name.as_str(), file.variants), ("lamp", 1));
+            assert_eq!((file.luminaire.name.as_str(), file.variants, file.emitters), ("lamp", 1, 1));
             assert!((file.luminaire.flux() / l.flux() - 1.0).abs() < 1e-9);
             for extension in extensions {
                 assert_eq!(Format::of_path(Path::new(&format!("a.b.{extension}"))).unwrap(), format);
@@ -119,6 +130,16 @@ mod tests {
         }
         assert!(Format::of_path(Path::new("lamp.pdf")).unwrap_err().message.contains(".gldf"));
         assert_eq!(Format::of_content(b""), Format::Ldt);
+        assert_eq!(Format::Ies.confirmed(b"<a/>"), Format::Tm33);
+        assert_eq!(Format::Gldf.confirmed(b"no archive"), Format::Gldf);
+        for (path, want) in [
+            ("a/b.gldf#white, 3000 K", ("a/b.gldf", Some("white, 3000 K"))),
+            ("B.GLDF#a#1", ("B.GLDF", Some("a#1"))),
+            ("b.gldf", ("b.gldf", None)),
+            ("b#1.ldt", ("b#1.ldt", None)),
+        ] {
+            assert_eq!(split_variant(path), want);
+        }
         assert_eq!(Format::of_content(b"\xef\xbb\xbf <a/>"), Format::Tm33);
     }
 }

@@ -32,6 +32,16 @@ pub struct Luminaire {
     pub side_heights: Option<[f64; 4]>,
 }
 
+/// A luminaire file that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct File {
+    pub luminaire: Luminaire,
+    /// Number of variants of the product in the file. It is 1 for all formats but GLDF.
+    pub variants: usize,
+    /// Number of light emitters whose distributions were added up. It is 1 for IES and EULUMDAT.
+    pub emitters: usize,
+}
+
 impl Luminaire {
     /// A Lambertian disc or panel that emits `flux` lumens downwards: `I = flux / π · cos γ`.
     pub fn lambertian(name: &str, flux: f64, size: [f64; 3]) -> Self {

@@ -124,6 +124,11 @@ impl<'a> Element<'a> {
         self.0.text().unwrap_or("").trim()
     }
 
+    /// The element's text on one line: each run of blanks and line breaks becomes one blank.
+    pub fn line_of_text(self) -> String {
+        self.text().split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
     /// The trimmed text of the element at a path; empty if there is none.
     pub fn text_at(self, path: &str) -> &'a str {
         self.find(path).map_or("", Self::text)

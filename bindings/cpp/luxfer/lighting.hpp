@@ -121,7 +121,7 @@ public:
     Result<luxfer_placement> placement() const { return value<luxfer_placement>(luxfer_importance_get_placement); }
 };
 
-/// A luminous intensity distribution from an IES or EULUMDAT file. See luxfer_distribution.
+/// A luminous intensity distribution from an IES, EULUMDAT, TM-33 or GLDF file. See luxfer_distribution.
 class Distribution : public Handle<luxfer_distribution> {
 public:
     using Handle::Handle;
@@ -136,7 +136,7 @@ public:
         return make_in<Distribution>(context, luxfer_distribution_load_memory, data, std::strlen(file.get()), format);
     }
 
-    /// Saves to an .ies or .ldt file.
+    /// Saves to an .ies, .ldt, .xml or .gldf file.
     Result<> save(Text path) const { return call(luxfer_distribution_save, path.get()); }
 
     Result<luxfer_distribution_report> report() const {

@@ -1,7 +1,6 @@
 //! Reads a variant of the product that a container describes.
 
-use super::super::format::File;
-use super::super::luminaire::Luminaire;
+use super::super::luminaire::{File, Luminaire};
 use super::super::sum::{MAX_PARTS, sum};
 use super::super::xml::{self, Element};
 use super::container::Container;
@@ -32,7 +31,7 @@ fn product(container: &Container, root: Element, variant: Option<&str>) -> Resul
     };
     let all: Vec<Element> = product.find("Variants").into_iter().flat_map(|list| list.all("Variant")).collect();
     let chosen = choose(&all, variant)?;
-    let references = emitters_of(chosen)?;
+    let references = emitters_of(chosen, definitions)?;
     let emitters = Emitters { container, definitions };
     let parts = references.iter().map(|id| emitters.read(id)).collect::<Result<Vec<Option<Luminaire>>>>()?;
     let parts: Vec<Luminaire> = parts.into_iter().flatten().collect();
@@ -40,6 +39,7 @@ fn product(container: &Container, root: Element, variant: Option<&str>) -> Resul
         let message = format!("line {}: the variant has no emitter that shines in normal operation", chosen.line());
         return Err(Error::new(ErrorKind::Unsupported, message));
     }
+    let emitters = parts.len();
     let mut luminaire = sum(parts)?;
     if let (None, Some(geometry)) = (luminaire.opening(), chosen.find("Geometry")) {
         opening_of(definitions, geometry, &mut luminaire)?;
@@ -51,9 +51,9 @@ fn product(container: &Container, root: Element, variant: Option<&str>) -> Resul
         _ if name == of_variant => name.into(),
         _ => format!("{name}, {of_variant}"),
     };
-    luminaire.manufacturer = root.text_at("Header/Manufacturer").into();
+    luminaire.manufacturer = root.find("Header/Manufacturer").map(Element::line_of_text).unwrap_or_default();
     luminaire.check()?;
-    Ok(File { luminaire, variants: all.len() })
+    Ok(File { luminaire, variants: all.len(), emitters })
 }
 
 fn name_of(variant: Element<'_>) -> &str {
@@ -79,9 +79,19 @@ fn choose<'a>(all: &[Element<'a>], wanted: Option<&str>) -> Result<Element<'a>> 
     })
 }
 
-/// Returns the ids of the emitters that a variant refers to.
-fn emitters_of<'a>(variant: Element<'a>) -> Result<Vec<&'a str>> {
-    let Some(geometry) = variant.find("Geometry") else { return Ok(Vec::new()) };
+/// Returns the ids of the emitters that a variant refers to. A variant that refers to none has the emitter of the
+/// product, if there is only one.
+fn emitters_of<'a>(variant: Element<'a>, definitions: Element<'a>) -> Result<Vec<&'a str>> {
+    let ids = variant.find("Geometry").map_or(Ok(Vec::new()), references)?;
+    let all = || definitions.find("Emitters").into_iter().flat_map(|list| list.all("Emitter"));
+    match (ids.is_empty(), all().next(), all().nth(1)) {
+        (true, Some(only), None) => Ok(only.attribute("id").into_iter().collect()),
+        _ => Ok(ids),
+    }
+}
+
+/// Returns the ids of the emitters to which a geometry refers.
+fn references(geometry: Element<'_>) -> Result<Vec<&str>> {
     // Simple and modelled geometry, if both are there, are two representations of one product.
     let inner = geometry.find("GeometryReferences").unwrap_or(geometry);
     let simple = inner.all("SimpleGeometryReference").filter_map(|reference| reference.attribute("emitterId"));

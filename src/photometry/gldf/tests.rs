@@ -141,6 +141,7 @@ fn variants_are_chosen_and_their_emitters_added_up() {
     }
     // The rated flux scales the photometry: twice for the second emitter. Lamps for emergencies and sensors are dark.
     let two = flux(Some("Two"));
+    assert_eq!(read(&bytes, Some("Two")).unwrap().emitters, 2);
     assert!((two.flux() / 3000.0 - 1.0).abs() < 1e-3, "{}", two.flux());
     assert_eq!((two.watts, two.temperature), (50.0, 3000.0));
     // Three lamps of 400 lm, and channels of 100 lm and 200 lm.
@@ -183,6 +184,22 @@ fn written_containers_are_read_back() {
         assert_eq!((again.luminaire, again.variants), (of_ldt, 1));
     }
     assert_eq!(write(&lamp(1.0), NOW).unwrap(), write(&lamp(1.0), NOW).unwrap());
+}
+
+/// A variant without geometry has the emitter of the product, if there is only one.
+#[test]
+fn a_single_emitter_needs_no_reference() {
+    let l = lamp(1000.0);
+    let text = product_of(&write(&Luminaire { size: [0.0; 3], ..l.clone() }, NOW).unwrap());
+    let photometry = ldt::write(&l).unwrap();
+    let geometry = &text[text.find("<Geometry>").unwrap()..text.find("</Variant>").unwrap()];
+    let read_of = |text: &str| {
+        read(&archive(&[("product.xml", text.as_bytes()), ("ldc/photometry.ldt", photometry.as_bytes())]), None)
+    };
+    let found = read_of(&text.replace(geometry, "<Geometry/>")).unwrap();
+    assert_eq!((found.emitters, found.luminaire.size), (1, l.size));
+    let two = text.replace(geometry, "").replace("<Emitters>", "<Emitters><Emitter id=\"other\"/>");
+    assert_eq!(read_of(&two).unwrap_err().kind, ErrorKind::Unsupported);
 }
 
 /// A photometry without an opening takes it from the simple geometry.

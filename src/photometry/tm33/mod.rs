@@ -18,5 +18,5 @@ mod read;
 mod tests;
 mod write;
 
-pub use read::{is_root, read};
+pub use read::{read, read_file};
 pub use write::write;

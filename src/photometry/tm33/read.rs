@@ -1,13 +1,13 @@
 //! Reads a TM-33 file.
 
-use super::super::luminaire::Luminaire;
+use super::super::luminaire::{File, Luminaire};
 use super::super::sum::{MAX_PARTS, sum};
 use super::super::xml::{self, Element};
 use super::{areas, intensities};
 use crate::error::{Error, ErrorKind, Result};
 
 /// Whether an element of this name is the root of a TM-33 file.
-pub fn is_root(name: &str) -> bool {
+fn is_root(name: &str) -> bool {
     name.starts_with("IESTM33") || name == "LuminaireOpticalData"
 }
 
@@ -17,6 +17,14 @@ pub fn is_root(name: &str) -> bool {
 /// `Format`, with the line, if the file is malformed; `Unsupported` for photometry of types A and B, for directions
 /// that form no grid, and for files that state no luminous intensities.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
+    read_file(bytes).map(|file| file.luminaire)
+}
+
+/// Reads a TM-33 file as [`read`] does, and counts its emitters.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_file(bytes: &[u8]) -> Result<File> {
     let text = xml::decode(bytes)?;
     let document = xml::parse(&text)?;
     let root = Element::root(&document);
@@ -37,16 +45,13 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         let message = "the file states no luminous intensities (Emitter/LuminousData)";
         return Err(Error::new(ErrorKind::Unsupported, message));
     }
+    let emitters = parts.len();
     let mut luminaire = sum(parts)?;
-    luminaire.name = ["Header/Description", "Header/CatalogNumber"]
-        .map(|path| root.text_at(path))
-        .into_iter()
-        .find(|text| !text.is_empty())
-        .unwrap_or("")
-        .into();
-    luminaire.manufacturer = root.text_at("Header/Manufacturer").into();
+    let names = ["Header/Description", "Header/CatalogNumber"].into_iter().filter_map(|path| root.find(path));
+    luminaire.name = names.map(Element::line_of_text).find(|name| !name.is_empty()).unwrap_or_default();
+    luminaire.manufacturer = root.find("Header/Manufacturer").map(Element::line_of_text).unwrap_or_default();
     luminaire.check()?;
-    Ok(luminaire)
+    Ok(File { luminaire, variants: 1, emitters })
 }
 
 /// Finds the element that holds the luminous intensities of an emitter.

@@ -12,8 +12,8 @@ const NOW: Moment = Moment(1_735_689_599);
 /// A TM-33-18 file of a luminaire with emission areas; the `points` are its intensities.
 fn file(points: &str, extra: &str) -> String {
     format!(
-        "<?xml version=\"1.0\"?>\n<IESTM33>\n<Version>1.0</Version>\n<Header>\n<Manufacturer>Works &amp; Co</Manufacturer>\n\
-         <Description>Troffer</Description>\n<Laboratory>L</Laboratory>\n<ReportNumber>1</ReportNumber>\n\
+        "<?xml version=\"1.0\"?>\n<IESTM33>\n<Version>1.0</Version>\n<Header>\n<Manufacturer>Works\n &amp; Co</Manufacturer>\n\
+         <Description> Troffer\n</Description>\n<Laboratory>L</Laboratory>\n<ReportNumber>1</ReportNumber>\n\
          <ReportDate>2020-01-01</ReportDate>\n</Header>\n<Luminaire>\n<Dimensions><Length>1.3</Length><Width>0.7</Width>\
          <Height>0.1</Height></Dimensions>\n<NumEmitter>1</NumEmitter>\n</Luminaire>\n<Equipment><Gonioradiometer>\
          <Type>IES_C</Type></Gonioradiometer></Equipment>\n<Emitter>\n<Quantity>2</Quantity>\n<Description>E</Description>\n\
@@ -79,6 +79,7 @@ fn the_flux_of_a_cosine_emitter_is_a_closed_form() {
     let emitter = &text[text.find("<Emitter>").unwrap()..text.find("</IESTM33>").unwrap()];
     let two = read(text.replace("</IESTM33>", &format!("{emitter}</IESTM33>")).as_bytes()).unwrap();
     assert!((two.flux() / l.flux() - 2.0).abs() < 1e-5 && two.watts == 70.8 && two.temperature == 4000.0);
+    assert_eq!(read_file(text.replace("</IESTM33>", &format!("{emitter}</IESTM33>")).as_bytes()).unwrap().emitters, 2);
     assert!((two.intensity(77.0, 33.0) - 2.0 * l.intensity(0.0, 33.0)).abs() < 1e-9);
 }
 
@@ -182,9 +183,9 @@ fn malformed_files_are_refused_with_the_line() {
     says(&good.replace("IES_C", "CIE _ B"), "only type C");
     says(&good.replace("h=\"45\" v=\"90\"", "h=\"45\" v=\"80\""), "no intensity has the direction h = 0, v = 80");
     says(&good.replace("h=\"45\" v=\"90\"", "h=\"0\" v=\"90\""), "two intensities");
-    says(&good.replace("h=\"45\" v=\"90\"", "h=\"45\" v=\"190\""), "line 29: v is 190; it must lie in [0, 180]");
+    says(&good.replace("h=\"45\" v=\"90\"", "h=\"45\" v=\"190\""), "line 31: v is 190; it must lie in [0, 180]");
     says(&good.replace("h=\"45\" v=\"90\"", "h=\"45\""), "no attribute v");
-    says(&good.replace(">20<", ">NaN<"), "line 29: IntData is NaN");
+    says(&good.replace(">20<", ">NaN<"), "line 31: IntData is NaN");
     says(&good.replace(">20<", ">-1<"), "IntData is -1");
     says(&good.replace(">20<", ">many<"), "\"many\"");
     says(&good.replace(">35.4<", ">-5<"), "InputWattage is -5");
