@@ -6,6 +6,7 @@
 use super::text_lines::within;
 use crate::error::{Error, Result};
 use roxmltree::{Document, Node, ParsingOptions};
+use std::fmt::Write;
 
 /// Maximum size of a file in bytes, and maximum number of its nodes: elements, texts and comments. A distribution with
 /// an intensity every half degree takes a third of each. [convention]
@@ -204,7 +205,7 @@ impl Writer {
     /// Begins an element; `attributes` is empty or begins with a blank.
     pub fn begin(&mut self, name: &'static str, attributes: &str) {
         self.indent();
-        self.text += &format!("<{name}{attributes}>\n");
+        let _ = writeln!(self.text, "<{name}{attributes}>");
         self.open.push(name);
     }
 
@@ -212,7 +213,7 @@ impl Writer {
     pub fn end(&mut self) {
         if let Some(name) = self.open.pop() {
             self.indent();
-            self.text += &format!("</{name}>\n");
+            let _ = writeln!(self.text, "</{name}>");
         }
     }
 
@@ -220,10 +221,10 @@ impl Writer {
     pub fn leaf(&mut self, name: &str, attributes: &str, text: impl std::fmt::Display) {
         self.indent();
         let text = escape(&text.to_string());
-        self.text += &if text.is_empty() {
-            format!("<{name}{attributes}/>\n")
+        let _ = if text.is_empty() {
+            writeln!(self.text, "<{name}{attributes}/>")
         } else {
-            format!("<{name}{attributes}>{text}</{name}>\n")
+            writeln!(self.text, "<{name}{attributes}>{text}</{name}>")
         };
     }
 

@@ -12,7 +12,7 @@ pub fn locale(element: Option<Element<'_>>) -> &str {
 }
 
 /// All texts of an element with `Locale` children.
-pub fn locales<'a>(element: Option<Element<'a>>) -> impl Iterator<Item = &'a str> {
+pub fn locales(element: Option<Element<'_>>) -> impl Iterator<Item = &str> {
     element.into_iter().flat_map(|element| element.all("Locale")).map(Element::text)
 }
 
