@@ -1,6 +1,6 @@
-"""Loads damaged files: PNG, EXR, GLB, EULUMDAT, TM-33 and GLDF files and parts of renderings, all written by the library,
-an IES file and a Radiance HDR, in which random bytes and numbers have been changed; and random texts made of the symbols
-of light path expressions and strokes. Files that load are also used.
+"""Loads damaged files: PNG, EXR, GLB, EULUMDAT, TM-33 and GLDF files and parts of renderings, all written by the
+library, an IES file and a Radiance HDR, in which random bytes and numbers have been changed; and random texts made of
+the symbols of light path expressions and strokes. Files that load are also used.
 
     python3 files.py FIRST COUNT JOURNAL   loads the files of COUNT seeds from FIRST in this process
     python3 files.py --seconds 600         loads files of new seeds for 600 seconds, in child processes
