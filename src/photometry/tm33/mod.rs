@@ -4,7 +4,7 @@
 //! Read are the header, the emitters with their luminous intensities in C planes, symmetry, rated flux, power, colour
 //! temperature and colour rendering, and the emission areas ([`areas`]). Several emitters are added up. Files with the
 //! root `LuminaireOpticalData`, which some tools write, are read as well: their elements `IntensityData` lie directly
-//! in `IntensityDistribution` or `LuminousData`, with attributes `horz` and `vert`.
+//! in `IntensityDistribution` or `LuminousData`, with attributes `horz` and `vert`, and are in candela per 1000 lumens.
 //!
 //! Lengths are in metres. The length lies along C = 90 and the width along C = 0: TM-33 states the emission area on the
 //! face towards C = 0 by a length and a height.

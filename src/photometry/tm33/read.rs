@@ -87,6 +87,10 @@ fn part(emitter: Element, element: Element) -> Result<Luminaire> {
     let is_absolute = matches!(element.text_at("AbsolutePhotometry").to_ascii_lowercase().as_str(), "true" | "1");
     let quantity = emitter.number_at("Quantity", 0.0, 1e6)?.unwrap_or(1.0);
     let rated = emitter.number_at("RatedLumens", 0.0, 1e12)?.unwrap_or(0.0);
+    // The tools that write `IntensityData` take it over from EULUMDAT, per 1000 lumens of all lamps.
+    let is_of_tools = element.find("IntensityData").is_some();
+    let lamp_flux = if is_of_tools { rated } else { rated * quantity };
+    let per_lamps = if is_of_tools && !is_absolute && rated > 0.0 { rated / 1000.0 } else { 1.0 };
     let first = |paths: [&str; 2], high: f64| -> Result<f64> {
         let found = paths.into_iter().find_map(|path| emitter.number_at(path, 0.0, high).transpose());
         Ok(found.transpose()?.unwrap_or(0.0))
@@ -94,8 +98,8 @@ fn part(emitter: Element, element: Element) -> Result<Luminaire> {
     let mut luminaire = Luminaire {
         gammas: found.gammas,
         planes: found.planes,
-        candela: found.candela.iter().map(|v| v * multiplier * ballast).collect(),
-        lamp_flux: if is_absolute { 0.0 } else { rated * quantity },
+        candela: found.candela.iter().map(|v| v * multiplier * ballast * per_lamps).collect(),
+        lamp_flux: if is_absolute { 0.0 } else { lamp_flux },
         watts: first(["InputWattage", "InputWatts"], 1e9)?,
         temperature: first(["ColorTemperature/FixedCCT", "CCT"], 1e6)?,
         rendering: first(["ColorRendering/CIE_CRI/Ra", "ColorRendering/Ra"], 100.0)?,

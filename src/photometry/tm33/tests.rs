@@ -167,6 +167,10 @@ fn files_of_other_tools_are_read() {
     let l = read(text.as_bytes()).unwrap();
     assert_eq!((l.name.as_str(), l.watts, l.temperature, l.rendering), ("N", 30.0, 6500.0, 86.0));
     assert_eq!(l.intensity(200.0, 45.0), 25.0);
+    // With the flux of the lamps, of which there are two, intensities are per 1000 lm.
+    let relative = text.replace("<Quantity>1</Quantity>", "<Quantity>2</Quantity><RatedLumens>3000</RatedLumens>");
+    let l = read(relative.as_bytes()).unwrap();
+    assert_eq!((l.intensity(200.0, 45.0), l.lamp_flux), (75.0, 3000.0));
 }
 
 #[track_caller]
