@@ -219,8 +219,9 @@ def luminaire_words(found: dict[str, Any]) -> list[str]:
         f"{found['peak_c_degrees']}, gamma {found['peak_gamma_degrees']} degrees",
     ]
     if found["temperature"] or found["rendering"]:
-        colours = [f"{found['temperature']:.0f} K" * (found["temperature"] > 0), f"Ra {found['rendering']:.0f}" * (found["rendering"] > 0)]
-        lines.append("lamps: " + ", ".join(text for text in colours if text))
+        colours = [f"{found['temperature']:.0f} K"] if found["temperature"] else []
+        colours += [f"Ra {found['rendering']:.0f}"] if found["rendering"] else []
+        lines.append(f"lamps: {', '.join(colours)}")
     if found["variant_names"]:
         lines.append(f"{found['variants']} variants, chosen by #INDEX, #ID or #NAME after the file's name:")
         for index, name in enumerate(found["variant_names"][:LISTED]):
