@@ -347,6 +347,8 @@ def seeds() -> dict[str, tuple[list[bytes], list[str]]]:
         "gltf": ([glb, as_text(glb), posed(), *map(compressed, DRACO)], [f'\\"{word}\\"' for word in sorted(words(tree) | MORE)]),
         "ies": ([text.encode() for text in IES], ["TILT=NONE", "TILT=INCLUDE", "IESNA:LM-63-1986", "[LUMCAT]"]),
         "ldt": ([saved(lamp, "ldt")], [" 90", "-1", "1e30"]),
+        "tm33": ([saved(lamp, "xml")], ["IESTM33", "<Emitter>", "Symm_Bi_90", "BottomArea", "Circular", "<!DOCTYPE", "&#38;"]),
+        "gldf": ([saved(lamp, "gldf")], ["PK\\x03\\x04", "product.xml", "ldc/", "Variant"]),
         "onnx": (nets, ["align_corners", "pytorch_half_pixel", "asymmetric", "auto_pad", "SAME_UPPER", "ceil_mode", "CRD"]),
         "lpe": ([text.encode() for text in EXPRESSIONS], [s.replace("\u00e9", "\\xc3\\xa9") for s in files.SYMBOLS[0]]),
         "strokes": ([text.encode() for text in STROKES], ["plane", "not-plane", "light", "not-light", "nan", "1e308"]),

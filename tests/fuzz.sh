@@ -6,9 +6,9 @@
 #   tests/fuzz.sh [SECONDS] [TARGET...]     runs each target for SECONDS (default 600); default: all targets
 #
 # The targets: image (PNG, JPEG, WebP, TIFF, BMP, GIF, Radiance HDR, and the metadata of cameras in them), exr, gltf
-# (GLB and glTF), ies and ldt (luminaires), onnx (networks, which are also run), lpe (light path expressions, which are
-# also rendered), strokes, part (parts of a rendering, which are merged), calls (sequences of calls to all functions of
-# the header).
+# (GLB and glTF), ies, ldt, tm33 and gldf (luminaires), onnx (networks, which are also run), lpe (light path
+# expressions, which are also rendered), strokes, part (parts of a rendering, which are merged), calls (sequences of
+# calls to all functions of the header).
 #
 # Corpora grow in target/fuzz/corpus from run to run. Inputs that fail are in target/fuzz/artifacts. To run one again,
 # and to minimise it:
@@ -20,7 +20,7 @@ cd "$(dirname "$0")/.."
 build="$PWD/target/fuzz"
 seconds="${1:-600}"
 [ $# -eq 0 ] || shift
-targets="${*:-image exr gltf ies ldt onnx lpe strokes part calls}"
+targets="${*:-image exr gltf ies ldt tm33 gldf onnx lpe strokes part calls}"
 
 cargo +nightly fuzz build --fuzz-dir fuzz --target-dir "$build"
 target/peers/python/bin/python fuzz/seeds.py "$build/seeds"

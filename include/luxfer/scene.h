@@ -539,9 +539,9 @@ luxfer_status luxfer_scene_get_camera(luxfer_scene *scene,
 /* ==================================================================================================================
  * Luminous intensity distributions
  *
- * A distribution gives the luminous intensity of a luminaire in each direction. It is read from IES (LM-63) or
- * EULUMDAT files, and can be written to both formats. These calls are synchronous: they do their work before they
- * return.
+ * A distribution gives the luminous intensity of a luminaire in each direction. It is read from IES (LM-63), EULUMDAT,
+ * TM-33 or GLDF files, and can be written to all these formats. These calls are synchronous: they do their work before
+ * they return.
  * ================================================================================================================== */
 
 /** A luminous intensity distribution. See luxfer_distribution_load. */
@@ -572,9 +572,20 @@ typedef struct luxfer_distribution_report {
     /**
      * Size of the luminous opening in metres: along C = 0°, along C = 90° and along the axis. As in IES files,
      * negative values stand for a round opening: the absolute value is the diameter. IES files name the three values
-     * length, width and height; EULUMDAT files name them width, length and height.
+     * length, width and height; EULUMDAT and TM-33 files name them width, length and height.
      */
     double size[3];
+    /** Correlated colour temperature of the lamps in kelvin; 0 if unknown. */
+    double temperature;
+    /** General colour rendering index Ra of the lamps; 0 if unknown. */
+    double rendering;
+    /** Number of variants of the product in a GLDF container; 1 for all other formats. */
+    uint32_t variants;
+    /**
+     * Number of light emitters in the file, or in the variant, whose distributions are added up; 1 for IES and
+     * EULUMDAT.
+     */
+    uint32_t emitters;
 } luxfer_distribution_report;
 
 /** IES LM-63 (.ies), with type C photometry. */
@@ -583,18 +594,32 @@ typedef struct luxfer_distribution_report {
 /** EULUMDAT (.ldt). */
 #define LUXFER_DISTRIBUTION_LDT 1
 
+/** ANSI/IES TM-33-18 and TM-33-23 (.xml). Several emitters are added up. TM-33-23 is written. */
+#define LUXFER_DISTRIBUTION_TM33 2
+
+/** GLDF container (.gldf): a product with variants, of which one is read. */
+#define LUXFER_DISTRIBUTION_GLDF 3
+
+/** Any of these formats, told by the content of the file. */
+#define LUXFER_DISTRIBUTION_ANY 4
+
 /**
- * Loads a distribution from an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
+ * Loads a distribution from an .ies, .ldt, .xml (TM-33) or .gldf file; path is UTF-8. TM-33 and GLDF are recognised by
+ * their content, whichever of these extensions the path has. After .gldf, the path may go on with # and the name, the
+ * id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
+ * releases *distribution. Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
- * LUXFER_UNSUPPORTED for IES photometry of types A and B; LUXFER_INVALID_ARGUMENT if the path has another extension.
+ * LUXFER_UNSUPPORTED for photometry of types A and B, and for files whose photometry is elsewhere or is not luminous;
+ * LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
+ * extension.
  */
 luxfer_status luxfer_distribution_load(luxfer_context *context,
                                        const char *path,
                                        luxfer_distribution **distribution);
 
 /**
- * Loads a distribution from a file in memory of size bytes at data; format is a LUXFER_DISTRIBUTION_ value.
- * Ownership, threads and errors are as for luxfer_distribution_load.
+ * Loads a distribution from a file in memory of size bytes at data; format is a LUXFER_DISTRIBUTION_ value. Of a GLDF
+ * container, the first variant is read. Ownership, threads and errors are as for luxfer_distribution_load.
  */
 luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
                                               const void *data,
@@ -603,8 +628,9 @@ luxfer_status luxfer_distribution_load_memory(luxfer_context *context,
                                               luxfer_distribution **distribution);
 
 /**
- * Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
- * complete. Any thread.
+ * Saves a distribution to an .ies, .ldt, .xml (TM-33) or .gldf file; path is UTF-8. A GLDF container has one variant,
+ * with the photometry as EULUMDAT and the opening as a simple geometry. An existing file is replaced only once the new
+ * one is complete. Any thread.
  * LUXFER_INVALID_ARGUMENT if the path has another extension, LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_distribution_save(luxfer_distribution *distribution,

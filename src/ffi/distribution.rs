@@ -1,8 +1,8 @@
 //! Luminous intensity distributions
 //!
-//! A distribution gives the luminous intensity of a luminaire in each direction. It is read from IES (LM-63) or
-//! EULUMDAT files, and can be written to both formats. These calls are synchronous: they do their work before they
-//! return.
+//! A distribution gives the luminous intensity of a luminaire in each direction. It is read from IES (LM-63), EULUMDAT,
+//! TM-33 or GLDF files, and can be written to all these formats. These calls are synchronous: they do their work before
+//! they return.
 
 use super::context::{Context, luxfer_context};
 use super::guard::enter;
@@ -12,7 +12,7 @@ use super::pointer::{Out, bytes, copy_text, text};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::io;
-use crate::photometry::{Luminaire, ies, ldt};
+use crate::photometry::{File, Format, Luminaire, split_variant};
 use std::ffi::{c_char, c_void};
 use std::path::Path;
 use std::sync::Arc;
@@ -28,6 +28,12 @@ pub type luxfer_distribution_format = i32;
 pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
 /// EULUMDAT (.ldt).
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
+/// ANSI/IES TM-33-18 and TM-33-23 (.xml). Several emitters are added up. TM-33-23 is written.
+pub const LUXFER_DISTRIBUTION_TM33: luxfer_distribution_format = 2;
+/// GLDF container (.gldf): a product with variants, of which one is read.
+pub const LUXFER_DISTRIBUTION_GLDF: luxfer_distribution_format = 3;
+/// Any of these formats, told by the content of the file.
+pub const LUXFER_DISTRIBUTION_ANY: luxfer_distribution_format = 4;
 
 /// Summary of a luminous intensity distribution.
 #[repr(C)]
@@ -50,17 +56,41 @@ pub struct luxfer_distribution_report {
     pub watts: f64,
     /// Size of the luminous opening in metres: along C = 0°, along C = 90° and along the axis. As in IES files,
     /// negative values stand for a round opening: the absolute value is the diameter. IES files name the three values
-    /// length, width and height; EULUMDAT files name them width, length and height.
+    /// length, width and height; EULUMDAT and TM-33 files name them width, length and height.
     pub size: [f64; 3],
+    /// Correlated colour temperature of the lamps in kelvin; 0 if unknown.
+    pub temperature: f64,
+    /// General colour rendering index Ra of the lamps; 0 if unknown.
+    pub rendering: f64,
+    /// Number of variants of the product in a GLDF container; 1 for all other formats.
+    pub variants: u32,
+    /// Number of light emitters in the file, or in the variant, whose distributions are added up; 1 for IES and
+    /// EULUMDAT.
+    pub emitters: u32,
 }
 
-versioned!(luxfer_distribution_report, [64], {
-    Self { struct_size: 64, planes: 0, angles: 0, reserved: 0, flux: 0.0, lamp_flux: 0.0, watts: 0.0, size: [0.0; 3] }
+versioned!(luxfer_distribution_report, [64, 88], {
+    Self {
+        struct_size: 88,
+        planes: 0,
+        angles: 0,
+        reserved: 0,
+        flux: 0.0,
+        lamp_flux: 0.0,
+        watts: 0.0,
+        size: [0.0; 3],
+        temperature: 0.0,
+        rendering: 0.0,
+        variants: 0,
+        emitters: 0,
+    }
 });
 
 pub(super) struct Distribution {
     context: Arc<Context>,
     luminaire: Arc<Luminaire>,
+    variants: usize,
+    emitters: usize,
 }
 
 impl Distribution {
@@ -81,27 +111,33 @@ impl Handle for luxfer_distribution {
     const NAME: &'static str = "luxfer_distribution";
 }
 
-/// Returns the format that a path's extension names: .ies or .ldt.
-fn format_of(path: &Path) -> Result<luxfer_distribution_format> {
-    let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
-    match extension.as_str() {
-        "ies" => Ok(LUXFER_DISTRIBUTION_IES),
-        "ldt" => Ok(LUXFER_DISTRIBUTION_LDT),
-        _ => Err(Error::argument(format!("{} ends neither in .ies nor in .ldt", path.display()))),
+/// Returns the format that a value of the interface stands for. The content decides for LUXFER_DISTRIBUTION_ANY.
+fn format_of(value: luxfer_distribution_format, bytes: &[u8]) -> Result<Format> {
+    match value {
+        LUXFER_DISTRIBUTION_IES => Ok(Format::Ies),
+        LUXFER_DISTRIBUTION_LDT => Ok(Format::Ldt),
+        LUXFER_DISTRIBUTION_TM33 => Ok(Format::Tm33),
+        LUXFER_DISTRIBUTION_GLDF => Ok(Format::Gldf),
+        LUXFER_DISTRIBUTION_ANY => Ok(Format::of_content(bytes)),
+        _ => Err(Error::argument(format!("format is {value}; it must be a LUXFER_DISTRIBUTION_ value"))),
     }
 }
 
-fn read(bytes: &[u8], format: luxfer_distribution_format) -> Result<Luminaire> {
-    match format {
-        LUXFER_DISTRIBUTION_IES => ies::read(bytes),
-        LUXFER_DISTRIBUTION_LDT => ldt::read(bytes),
-        _ => Err(Error::argument(format!("format is {format}; it must be a LUXFER_DISTRIBUTION_ value"))),
+impl Distribution {
+    fn new(context: &Arc<Context>, file: File) -> Arc<Self> {
+        let File { luminaire, variants, emitters } = file;
+        Arc::new(Self { context: context.clone(), luminaire: Arc::new(luminaire), variants, emitters })
     }
 }
 
-/// Loads a distribution from an .ies or .ldt file; path is UTF-8. The caller releases *distribution. Any thread.
+/// Loads a distribution from an .ies, .ldt, .xml (TM-33) or .gldf file; path is UTF-8. TM-33 and GLDF are recognised by
+/// their content, whichever of these extensions the path has. After .gldf, the path may go on with # and the name, the
+/// id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
+/// releases *distribution. Any thread.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
-/// LUXFER_UNSUPPORTED for IES photometry of types A and B; LUXFER_INVALID_ARGUMENT if the path has another extension.
+/// LUXFER_UNSUPPORTED for photometry of types A and B, and for files whose photometry is elsewhere or is not luminous;
+/// LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
+/// extension.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_load(
     context: *mut luxfer_context,
@@ -110,19 +146,17 @@ pub unsafe extern "C" fn luxfer_distribution_load(
 ) -> luxfer_status {
     enter(context, |object| {
         let out = Out::new(distribution, "distribution")?;
-        let path = text(path, "path")?;
-        let format = format_of(Path::new(path))?;
-        let luminaire = read(&io::read_file(Path::new(path))?, format).map_err(|e| e.context(path))?;
-        out.set(handle::give(Arc::new(Distribution {
-            context: object.context().clone(),
-            luminaire: Arc::new(luminaire),
-        })));
+        let (path, variant) = split_variant(text(path, "path")?);
+        let format = Format::of_path(Path::new(path))?;
+        let bytes = io::read_file(Path::new(path))?;
+        let file = format.confirmed(&bytes).read(&bytes, variant).map_err(|e| e.context(path))?;
+        out.set(handle::give(Distribution::new(object.context(), file)));
         Ok(())
     })
 }
 
-/// Loads a distribution from a file in memory of size bytes at data; format is a LUXFER_DISTRIBUTION_ value.
-/// Ownership, threads and errors are as for luxfer_distribution_load.
+/// Loads a distribution from a file in memory of size bytes at data; format is a LUXFER_DISTRIBUTION_ value. Of a GLDF
+/// container, the first variant is read. Ownership, threads and errors are as for luxfer_distribution_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_load_memory(
     context: *mut luxfer_context,
@@ -133,17 +167,16 @@ pub unsafe extern "C" fn luxfer_distribution_load_memory(
 ) -> luxfer_status {
     enter(context, |object| {
         let out = Out::new(distribution, "distribution")?;
-        let luminaire = read(bytes(data.cast(), size, "data")?, format)?;
-        out.set(handle::give(Arc::new(Distribution {
-            context: object.context().clone(),
-            luminaire: Arc::new(luminaire),
-        })));
+        let data = bytes(data.cast(), size, "data")?;
+        let file = format_of(format, data)?.read(data, None)?;
+        out.set(handle::give(Distribution::new(object.context(), file)));
         Ok(())
     })
 }
 
-/// Saves a distribution to an .ies or .ldt file; path is UTF-8. An existing file is replaced only once the new one is
-/// complete. Any thread.
+/// Saves a distribution to an .ies, .ldt, .xml (TM-33) or .gldf file; path is UTF-8. A GLDF container has one variant,
+/// with the photometry as EULUMDAT and the opening as a simple geometry. An existing file is replaced only once the new
+/// one is complete. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the path has another extension, LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_save(
@@ -152,11 +185,7 @@ pub unsafe extern "C" fn luxfer_distribution_save(
 ) -> luxfer_status {
     enter(distribution, |object| {
         let path = Path::new(text(path, "path")?);
-        let file = match format_of(path)? {
-            LUXFER_DISTRIBUTION_IES => ies::write(&object.luminaire)?,
-            _ => ldt::write(&object.luminaire)?,
-        };
-        io::write_file(path, file.as_bytes())
+        io::write_file(path, &Format::of_path(path)?.write(&object.luminaire)?)
     })
 }
 
@@ -176,6 +205,10 @@ pub unsafe extern "C" fn luxfer_distribution_get_report(
             lamp_flux: l.lamp_flux,
             watts: l.watts,
             size: l.size,
+            temperature: l.temperature,
+            rendering: l.rendering,
+            variants: object.variants as u32,
+            emitters: object.emitters as u32,
             ..luxfer_distribution_report::defaults()
         });
         Ok(())

@@ -2,6 +2,7 @@
 //! B (floodlights) are refused.
 
 use super::luminaire::Luminaire;
+use super::symmetry::unfold;
 use super::text_lines::{self, Lines, MAX_ANGLES, MAX_VALUES, at, count, number, plain, within};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
@@ -102,8 +103,9 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let factor = multiplier * ballast * lamp_factor;
     let mut candela = words.list("an intensity", gammas * planes, 1e12)?;
     candela.iter_mut().for_each(|v| *v *= factor);
-    (luminaire.planes, luminaire.candela) = unfold(&horizontal, candela, gammas, words.line)?;
-    luminaire.check().map_err(|e| e.context(format_args!("line {}", words.line)))?;
+    let at_end = |e: Error| e.context(format_args!("line {}", words.line));
+    (luminaire.planes, luminaire.candela) = unfold(&horizontal, &candela, gammas).map_err(at_end)?;
+    luminaire.check().map_err(at_end)?;
     Ok(luminaire)
 }
 
@@ -127,49 +129,6 @@ fn keywords<'a>(
         }
     }
     Err(at(last, "the file has no line TILT=: it is not an IES file, or it is truncated"))
-}
-
-/// Expands the stored planes to the full circle, by the symmetry that their range of angles implies. Returns the
-/// angles C in degrees, and the intensities plane by plane.
-fn unfold(angles: &[f64], candela: Vec<f64>, gammas: usize, line: usize) -> Result<(Vec<f64>, Vec<f64>)> {
-    let (first, last) = (angles[0], angles[angles.len() - 1]);
-    if angles.windows(2).any(|w| w[0] >= w[1]) {
-        return Err(at(line, "the horizontal angles do not ascend"));
-    }
-    let plane = |i: usize| (angles[i], &candela[i * gammas..][..gammas]);
-    let mut all: Vec<(f64, &[f64])> = (0..angles.len()).map(plane).collect();
-    let mirror = |all: &mut Vec<(f64, &[f64])>, about: f64| {
-        // Skip the mirror image of a plane if it coincides with an existing plane: the image of a plane in the plane of
-        // symmetry is the plane itself.
-        let images: Vec<_> = all.iter().map(|&(c, values)| ((2.0 * about - c).rem_euclid(360.0), values)).collect();
-        let missing: Vec<_> = images.into_iter().filter(|(c, _)| all.iter().all(|(d, _)| d != c)).collect();
-        all.extend(missing);
-    };
-    match (first, last) {
-        (0.0, 0.0) => {}
-        (0.0, 90.0) => {
-            mirror(&mut all, 90.0);
-            mirror(&mut all, 180.0);
-        }
-        (0.0, 180.0) => mirror(&mut all, 180.0),
-        // From 90° to 270°: the distribution is symmetric about the plane through 90° and 270°.
-        (90.0, 270.0) => mirror(&mut all, 90.0),
-        (0.0, end) if end > 180.0 && end < 360.0 => {}
-        (0.0, 360.0) => {
-            all.pop();
-        }
-        _ => {
-            return Err(at(
-                line,
-                format_args!(
-                    "the horizontal angles go from {first} to {last}; they must go from 0 to 0, 90, 180 or 360, or \
-                     from 90 to 270"
-                ),
-            ));
-        }
-    }
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    Ok((all.iter().map(|(c, _)| *c).collect(), all.iter().flat_map(|(_, values)| values.iter().copied()).collect()))
 }
 
 /// Writes a luminaire as an LM-63-2002 file.

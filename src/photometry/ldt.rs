@@ -87,7 +87,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let factor = rows.within("the conversion factor", 0.0, 1e9)?;
     rows.skip(1, "the tilt")?;
 
-    let LampSet { lumens, watts, absolute } = lamp_sets(&mut rows)?;
+    let LampSet { lumens, watts, absolute, temperature, rendering } = lamp_sets(&mut rows)?;
     rows.list(ROOM_INDICES, "a direct ratio", -1e9, 1e9)?;
 
     let angles = rows.list(planes, "the angle of a C plane", 0.0, 360.0)?;
@@ -106,6 +106,8 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         candela,
         lamp_flux: if absolute { 0.0 } else { lumens },
         watts,
+        temperature,
+        rendering,
         size,
         side_heights,
     };
@@ -119,24 +121,47 @@ struct LampSet {
     watts: f64,
     /// Whether the file declares absolute photometry.
     absolute: bool,
+    /// Colour temperature in kelvin and colour rendering index; 0 if the file does not state them as numbers.
+    temperature: f64,
+    rendering: f64,
 }
 
 /// Reads the lamp sets and returns the first, with which the luminaire was measured. A negative number of lamps
 /// declares absolute photometry.
 fn lamp_sets<'a>(rows: &mut Rows<'a, impl Iterator<Item = (usize, &'a str)>>) -> Result<LampSet> {
     let sets = rows.count("the number of sets of lamps", 1, MAX_SETS)?;
-    let mut first = LampSet { lumens: 0.0, watts: 0.0, absolute: false };
+    let mut first = LampSet { lumens: 0.0, watts: 0.0, absolute: false, temperature: 0.0, rendering: 0.0 };
     for set in 0..sets {
         let lamps = rows.within("the number of lamps", -1e6, 1e6)?;
         rows.next("the type of lamps")?;
         let flux = rows.within("the lamps' flux", 0.0, 1e12)?;
-        rows.skip(2, "the colour rendering")?;
+        let temperature = temperature(rows.next("the colour temperature")?);
+        let rendering = rendering(rows.next("the colour rendering")?);
         let power = rows.within("the power", 0.0, 1e9)?;
         if set == 0 {
-            first = LampSet { lumens: flux, watts: power, absolute: lamps < 0.0 };
+            first = LampSet { lumens: flux, watts: power, absolute: lamps < 0.0, temperature, rendering };
         }
     }
     Ok(first)
+}
+
+/// Finds the whole numbers in a text, such as 3000 in "ww/3000K".
+fn numbers(text: &str) -> impl Iterator<Item = u32> {
+    text.split(|c: char| !c.is_ascii_digit()).filter_map(|digits| digits.parse().ok())
+}
+
+/// Returns the colour temperature in kelvin of lamps, written as a temperature ("3000 K", "ww/3000") or as a colour
+/// code ("840": the hundreds of kelvin are 40); 0 if the text has neither.
+fn temperature(text: &str) -> f64 {
+    let kelvin = numbers(text).find(|n| (1000..=25_000).contains(n));
+    let code = numbers(text).find(|n| (200..1000).contains(n) && n % 100 >= 18).map(|n| n % 100 * 100);
+    f64::from(kelvin.or(code).unwrap_or(0))
+}
+
+/// Returns the colour rendering index of lamps ("80", "1B/85"); 0 if the text has none. Smaller numbers than 20 are
+/// groups of colour rendering.
+fn rendering(text: &str) -> f64 {
+    f64::from(numbers(text).find(|n| (20..=100).contains(n)).unwrap_or(0))
 }
 
 /// Returns the angles in degrees and the intensities in candela of all C planes of the full circle. Each plane is a
@@ -213,7 +238,9 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     let down = if flux > 0.0 { 100.0 * below_horizon(l).flux() / flux } else { 0.0 };
     let output_ratio = if lumens > 0.0 { 100.0 * flux / lumens } else { 0.0 };
     let [width, length, height] = l.size.map(|m| m * 1e3);
-    let (length, width) = if length < 0.0 { (-length, 0.0) } else { (length, width.abs()) };
+    // Only a round opening has no side of positive length. Tubes that lie are written as the boxes around them.
+    let is_round = width.min(length) < 0.0 && width.max(length) <= 0.0;
+    let (length, width) = if is_round { (-width.min(length), 0.0) } else { (length.abs(), width.abs()) };
     let mut text = String::new();
     let mut line = |value: &dyn std::fmt::Display| {
         let _ = write!(text, "{value}\r\n");
@@ -240,8 +267,9 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     line(&if l.lamp_flux > 0.0 { 1 } else { -1 });
     line(&"");
     line(&lumens);
-    line(&"");
-    line(&"");
+    for value in [l.temperature, l.rendering] {
+        line(&if value > 0.0 { value.round().to_string() } else { String::new() });
+    }
     line(&l.watts);
     (0..ROOM_INDICES).for_each(|_| line(&0));
     planes.iter().for_each(|c| line(c));
@@ -318,6 +346,36 @@ mod tests {
         assert_eq!(l.size, [0.3, 1.19, 0.0]);
         assert_eq!(ies::read(ies::write(&l).unwrap().as_bytes()).unwrap().size, l.size);
         assert_eq!(read(write(&l).unwrap().as_bytes()).unwrap().size, l.size);
+    }
+
+    #[test]
+    fn round_openings_stay_round_and_tubes_become_boxes() {
+        for (size, want) in [
+            ([-0.4, -0.4, 0.0], [-0.4, -0.4, 0.0]),
+            ([0.0, -0.4, 0.0], [-0.4, -0.4, 0.0]),
+            ([-0.4, 0.0, 0.1], [-0.4, -0.4, 0.1]),
+            ([1.2, -0.025, -0.025], [1.2, 0.025, 0.025]),
+            ([-0.025, 1.2, -0.025], [0.025, 1.2, 0.025]),
+        ] {
+            let l = Luminaire::lambertian("", 1000.0, size);
+            assert_eq!(read(write(&l).unwrap().as_bytes()).unwrap().size, want);
+        }
+    }
+
+    #[test]
+    fn colours_of_lamps_are_read() {
+        for (text, want) in
+            [("3000 K", 3000.0), ("ww/2700", 2700.0), ("840", 4000.0), ("-", 0.0), ("", 0.0), ("12", 0.0)]
+        {
+            assert_eq!(temperature(text), want, "{text}");
+        }
+        for (text, want) in [("80", 80.0), ("1A/90", 90.0), ("1B", 0.0), ("-", 0.0), ("1", 0.0)] {
+            assert_eq!(rendering(text), want, "{text}");
+        }
+        let l = read(file(1, 24, &[7.0]).as_bytes()).unwrap();
+        assert_eq!((l.temperature, l.rendering), (4000.0, 80.0));
+        let again = read(write(&l).unwrap().as_bytes()).unwrap();
+        assert_eq!((again.temperature, again.rendering), (4000.0, 80.0));
     }
 
     /// A batten that runs along C = 90. Its long sides, which face towards C = 0 and 180, are luminous; its ends are

@@ -1,4 +1,4 @@
-//! A luminaire's luminous intensity distribution in C planes: the content of IES and EULUMDAT files.
+//! A luminaire's luminous intensity distribution in C planes: the content of luminaire files.
 
 use super::opening::Opening;
 use crate::error::{Error, Result};
@@ -20,12 +20,26 @@ pub struct Luminaire {
     pub lamp_flux: f64,
     /// Electric power in watts, including the ballast; 0 if unknown.
     pub watts: f64,
+    /// Correlated colour temperature in kelvin; 0 if unknown.
+    pub temperature: f64,
+    /// General colour rendering index Ra; 0 if unknown.
+    pub rendering: f64,
     /// Size of the luminous opening in metres along C = 0, along C = 90 and along the axis. As in IES, a negative
     /// value is the diameter of a round opening.
     pub size: [f64; 3],
     /// Heights in metres of the luminous sides of a box that face towards C = 0, 90, 180 and 270; `None` if all sides
     /// are luminous up to the full height.
     pub side_heights: Option<[f64; 4]>,
+}
+
+/// A luminaire file that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct File {
+    pub luminaire: Luminaire,
+    /// Number of variants of the product in the file. It is 1 for all formats but GLDF.
+    pub variants: usize,
+    /// Number of light emitters whose distributions were added up. It is 1 for IES and EULUMDAT.
+    pub emitters: usize,
 }
 
 impl Luminaire {
@@ -42,6 +56,8 @@ impl Luminaire {
             candela,
             lamp_flux: flux,
             watts: 0.0,
+            temperature: 0.0,
+            rendering: 0.0,
             size,
             side_heights: None,
         }
@@ -50,6 +66,20 @@ impl Luminaire {
     /// Returns the luminous opening; `None` if the luminaire states no size, and so is a point.
     pub fn opening(&self) -> Option<Opening> {
         Opening::new(self.size, self.side_heights)
+    }
+
+    /// Returns the sides in metres of the box around the opening, along C = 0, along C = 90 and along the axis.
+    pub fn bounds(&self) -> [f64; 3] {
+        match self.opening() {
+            Some(Opening::Box { size, .. } | Opening::Ellipsoid(size)) => size.to_array(),
+            Some(Opening::Cylinder { axis, length, diameters }) => {
+                let mut sides = [length; 3];
+                sides[(axis + 1) % 3] = diameters[0];
+                sides[(axis + 2) % 3] = diameters[1];
+                sides
+            }
+            None => [0.0; 3],
+        }
     }
 
     /// Checks the distribution for consistency.

@@ -2,10 +2,10 @@
 //!
 //! [`temperature`] converts between colours and correlated colour temperatures, and finds the blackbody light closest
 //! to a target. [`glare`] rates the discomfort glare of a luminance image (UGR, CIE 117). [`luminaire`] holds a
-//! measured luminous intensity distribution, read from and written to IES LM-63 ([`ies`]) and EULUMDAT ([`ldt`])
-//! files. [`opening`] is the shape of a luminaire's luminous area, and [`faces`] its triangles. [`presets`] lists
-//! requirements of EN 12464-1 for common rooms. [`false_colour`] shows luminance and illuminance by a scale of
-//! colours.
+//! measured luminous intensity distribution, read from and written to files of IES LM-63 ([`ies`]), EULUMDAT
+//! ([`ldt`]), TM-33 ([`tm33`]) and GLDF ([`gldf`]). [`opening`] is the shape of a luminaire's luminous area, and
+//! [`faces`] its triangles. [`presets`] lists requirements of EN 12464-1 for common rooms. [`false_colour`] shows
+//! luminance and illuminance by a scale of colours.
 //!
 //! Two computations are elsewhere: `render::illuminance` computes illuminance, and `render::glare` rates the glare
 //! that the luminaires of a scene cause for observers.
@@ -13,19 +13,27 @@
 //! Not modelled: spectra and colour rendering; maintenance; bodies of luminaires, and luminance that varies over a
 //! luminous face.
 
+mod clock;
 pub mod faces;
 pub mod false_colour;
+mod format;
 pub mod glare;
+pub mod gldf;
 mod glyphs;
 pub mod ies;
 pub mod ldt;
 pub mod luminaire;
 pub mod opening;
 pub mod presets;
+mod sum;
+mod symmetry;
 pub mod temperature;
 mod text_lines;
+pub mod tm33;
+mod xml;
 
-pub use luminaire::Luminaire;
+pub use format::{Format, split_variant};
+pub use luminaire::{File, Luminaire};
 
 use crate::image::colour;
 use glam::Vec3;

@@ -1,6 +1,6 @@
-"""Loads damaged files: PNG, EXR, GLB and EULUMDAT files and parts of renderings, all written by the library, an IES
-file and a Radiance HDR, in which random bytes and numbers have been changed; and random texts made of the symbols of
-light path expressions and strokes. Files that load are also used.
+"""Loads damaged files: PNG, EXR, GLB, EULUMDAT, TM-33 and GLDF files and parts of renderings, all written by the
+library, an IES file and a Radiance HDR, in which random bytes and numbers have been changed; and random texts made of
+the symbols of light path expressions and strokes. Files that load are also used.
 
     python3 files.py FIRST COUNT JOURNAL   loads the files of COUNT seeds from FIRST in this process
     python3 files.py --seconds 600         loads files of new seeds for 600 seconds, in child processes
@@ -143,9 +143,10 @@ class Loader:
         ies = f"IESNA:LM-63-2002\n[LUMINAIRE] Lamp\nTILT=NONE\n{shape}".encode()
         self.distributions = [(ies, 0)]
         with tempfile.TemporaryDirectory() as folder:
-            path = Path(folder, "a.ldt")
-            luxfer.Distribution.load_memory(self.context, ies, "ies").save(path)
-            self.distributions.append((path.read_bytes(), 1))
+            for kind, ending in enumerate(("ldt", "xml", "gldf"), 1):
+                path = Path(folder, f"a.{ending}")
+                luxfer.Distribution.load_memory(self.context, ies, "ies").save(path)
+                self.distributions.append((path.read_bytes(), kind))
         # Two parts of a rendering: one stays intact, the other gets damaged.
         self.halves = tempfile.TemporaryDirectory()
         self.whole, self.other = (str(Path(self.halves.name, name)) for name in ("whole.part", "other.part"))

@@ -317,6 +317,8 @@ def photometry() -> Scenario:
     s.references(lamp)
     s.call("distribution_save", lamp, "a.ldt")
     s.make("distribution_load", s.context, "a.ldt")
+    s.call("distribution_save", lamp, "a.gldf")
+    s.make("distribution_load", s.context, "a.gldf#0")
     s.call("distribution_get_report", lamp, *report("distribution_report"))
     s.call("distribution_get_name", lamp, ROOM, 50, ROOM)
     s.call("distribution_get_intensity", lamp, 0.0, 30.0, ROOM)

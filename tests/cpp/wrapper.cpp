@@ -475,6 +475,9 @@ void lights_have_names() {
                         "1 -1 1 3 1 1 2 0.6 0.6 0\n1 1 30\n0 45 90\n0\n1000 707 0\n";
     const auto file = ok(luxfer::Distribution::load(context, panel, LUXFER_DISTRIBUTION_IES));
     CHECK(ok(file.name()) == "Panel" && ok(file.report()).watts == 30 && ok(file.intensity(90, 0)) == 1000);
+    const auto again = ok(luxfer::Distribution::load_memory(context, std::string(panel)));
+    CHECK(ok(again.report()).flux == ok(file.report()).flux && ok(again.report()).variants == 1);
+    CHECK_ERROR(luxfer::Distribution::load_memory(context, std::string("PK\x03\x04")), LUXFER_FORMAT);
     CHECK_ERROR(luxfer::Distribution::load(context, "no such.ies"), LUXFER_IO);
     const Scene hall = ok(Scene::create(context));
     CHECK(ok(luxfer::add_luminaire(hall, file)) == 0);

@@ -408,6 +408,13 @@ class Questions(Cli):
         self.assertEqual((photo["width"], photo["height"], photo["metadata"]["colour"]), (240, 160, "stated"))
         panel = self.json("inspect", self.path("panel.ies"))
         self.assertEqual((panel["kind"], panel["watts"], panel["intensity_down_cd"]), ("luminaire", 30, 1000))
+        lamp = luxfer.Distribution.load(context(), self.path("panel.ies"))
+        for name in ("panel.xml", "panel.gldf"):
+            lamp.save(self.folder / name)
+            found = self.json("inspect", str(self.folder / name))
+            self.assertEqual((found["watts"], found["variants"], found["emitters"]), (30, 1, 1), name)
+            self.assertAlmostEqual(found["intensity_down_cd"], 1000, places=9)
+            (self.folder / name).unlink()
         for name in ("room.glb", "photo.png", "panel.ies", "lit.glb"):
             self.assertGreater(len(self.call("inspect", self.path(name)).stdout), 60)
         self.assertEqual(self.written(), set())

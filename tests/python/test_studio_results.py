@@ -71,12 +71,12 @@ class Results(StudioCase):
                     self.assertLess(abs(other[name] - value / 4), 1e-5 * value, name)
         files = zipfile.ZipFile(io.BytesIO(self.out("photometry")))
         whole = sorted({int(kind) for kind in kinds} - {0})
-        names = [f"kind {chr(64 + k)}.{ending}" for k in whole for ending in ("ies", "ldt")]
+        names = [f"kind {chr(64 + k)}.{ending}" for k in whole for ending in ("ies", "ldt", "xml", "gldf")]
         self.assertEqual(sorted(files.namelist()), sorted(names))
         lamps = [row for row in csv.DictReader(io.StringIO(self.out("csv").decode())) if row["kind"] == "1"]
         mean = sum(float(row["flux_lm"]) for row in lamps) / len(lamps)
-        for ending in ("ies", "ldt"):
-            flux = luxfer.Distribution.load_memory(context(), files.read(f"kind A.{ending}"), ending).report.flux
+        for ending in ("ies", "ldt", "xml", "gldf"):
+            flux = luxfer.Distribution.load_memory(context(), files.read(f"kind A.{ending}")).report.flux
             self.assertLess(abs(flux / mean - 1), 0.01, ending)
         full, dimmed = (self.mean_of(kind) for kind in ({}, dict.fromkeys(kinds, 0.25)))
         self.assertLess(abs(dimmed / full - 0.25), 0.01)

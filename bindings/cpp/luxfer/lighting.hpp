@@ -121,7 +121,7 @@ public:
     Result<luxfer_placement> placement() const { return value<luxfer_placement>(luxfer_importance_get_placement); }
 };
 
-/// A luminous intensity distribution from an IES or EULUMDAT file. See luxfer_distribution.
+/// A luminous intensity distribution from an IES, EULUMDAT, TM-33 or GLDF file. See luxfer_distribution.
 class Distribution : public Handle<luxfer_distribution> {
 public:
     using Handle::Handle;
@@ -130,13 +130,22 @@ public:
         return make_in<Distribution>(context, luxfer_distribution_load, path.get());
     }
 
-    /// Loads a file in memory; format is a LUXFER_DISTRIBUTION_ value.
+    /// Loads a text file in memory; format is a LUXFER_DISTRIBUTION_ value.
     static Result<Distribution> load(const Context &context, Text file, luxfer_distribution_format format) {
         const void *data = file.get();
         return make_in<Distribution>(context, luxfer_distribution_load_memory, data, std::strlen(file.get()), format);
     }
 
-    /// Saves to an .ies or .ldt file.
+    /// Loads a file of any format from memory: any container of bytes.
+    template <class Bytes>
+    static Result<Distribution> load_memory(const Context &context, const Bytes &file,
+                                            luxfer_distribution_format format = LUXFER_DISTRIBUTION_ANY) {
+        static_assert(sizeof *std::data(file) == 1, "a file consists of bytes");
+        const void *data = std::data(file);
+        return make_in<Distribution>(context, luxfer_distribution_load_memory, data, std::size(file), format);
+    }
+
+    /// Saves to an .ies, .ldt, .xml or .gldf file.
     Result<> save(Text path) const { return call(luxfer_distribution_save, path.get()); }
 
     Result<luxfer_distribution_report> report() const {

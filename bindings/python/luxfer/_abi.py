@@ -86,6 +86,9 @@ LUXFER_WRAP_CLAMP = 1
 LUXFER_WRAP_MIRROR = 2
 LUXFER_DISTRIBUTION_IES = 0
 LUXFER_DISTRIBUTION_LDT = 1
+LUXFER_DISTRIBUTION_TM33 = 2
+LUXFER_DISTRIBUTION_GLDF = 3
+LUXFER_DISTRIBUTION_ANY = 4
 LUXFER_LIGHT_POINT = 0
 LUXFER_LIGHT_SPOT = 1
 LUXFER_LIGHT_DIRECTIONAL = 2
@@ -597,6 +600,10 @@ class luxfer_distribution_report(Structure):
         ("lamp_flux", c_double),
         ("watts", c_double),
         ("size", c_double * 3),
+        ("temperature", c_double),
+        ("rendering", c_double),
+        ("variants", c_uint32),
+        ("emitters", c_uint32),
     ]
     result = types.DistributionReport
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
 from . import _abi, _params
@@ -21,8 +22,20 @@ if TYPE_CHECKING:
     from .types import FalseColourParams
 
 
+#: Endings of the names of luminaire files.
+LUMINAIRES = (".ies", ".ldt", ".xml", ".iesxml", ".tm33", ".gldf")
+
+
+def luminaire_path(name: str | os.PathLike[str]) -> Path:
+    """The path of a luminaire file, without the variant that may follow the name of a .gldf file, as in
+    lamp.gldf#black."""
+    text = os.fspath(name)
+    mark = text.lower().find(".gldf#")
+    return Path(text if mark < 0 else text[: mark + len(".gldf")])
+
+
 class Distribution(Handle):
-    """A luminous intensity distribution; loads and saves IES and EULUMDAT files.
+    """A luminous intensity distribution; loads and saves IES, EULUMDAT, TM-33 and GLDF files.
 
     >>> panel = "IESNA:LM-63-2002\\nTILT=NONE\\n1 -1 1 3 1 1 2 0.6 0.6 0\\n1 1 30\\n0 45 90\\n0\\n1000 707 0\\n"
     >>> distribution = Distribution.load_memory(context, panel.encode(), "ies")
@@ -33,22 +46,25 @@ class Distribution(Handle):
     kind = "distribution"
 
     @classmethod
-    def load(cls, context: Context, path: str | os.PathLike[str]) -> Distribution:
-        """Loads an .ies or .ldt file."""
+    def load(cls, context: Context, path: str | os.PathLike[str], variant: str | int | None = None) -> Distribution:
+        """Loads an .ies, .ldt, .xml (TM-33) or .gldf file; variant is the name, the id or the index of a variant in a
+        .gldf file, whose first variant is read otherwise."""
         pointer = POINTER(_abi.luxfer_distribution)()
-        call(context, "luxfer_distribution_load", context, os.fspath(path).encode(), pointer)
+        name = os.fspath(path) + ("" if variant is None else f"#{variant}")
+        call(context, "luxfer_distribution_load", context, name.encode(), pointer)
         return cls._adopt(context, pointer)
 
     @classmethod
-    def load_memory(cls, context: Context, data: bytes, format: DistributionFormat | str) -> Distribution:
-        """Loads a distribution from the bytes of a file in the format "ies" or "ldt"."""
+    def load_memory(cls, context: Context, data: bytes, format: DistributionFormat | str = "any") -> Distribution:
+        """Loads a distribution from the bytes of a file in the format "ies", "ldt", "tm33" or "gldf"; "any" tells the
+        format by the content."""
         pointer = POINTER(_abi.luxfer_distribution)()
         kind = _params.member(DistributionFormat, format)
         call(context, "luxfer_distribution_load_memory", context, data, len(data), kind, pointer)
         return cls._adopt(context, pointer)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Saves the distribution as an .ies or .ldt file."""
+        """Saves the distribution as an .ies, .ldt, .xml (TM-33) or .gldf file."""
         self._call("save", os.fspath(path).encode())
 
     @property

@@ -167,6 +167,12 @@ class DistributionFormat(IntEnum):
     """IES LM-63 (.ies), with type C photometry."""
     LDT = 1
     """EULUMDAT (.ldt)."""
+    TM33 = 2
+    """ANSI/IES TM-33-18 and TM-33-23 (.xml). Several emitters are added up. TM-33-23 is written."""
+    GLDF = 3
+    """GLDF container (.gldf): a product with variants, of which one is read."""
+    ANY = 4
+    """Any of these formats, told by the content of the file."""
 
 
 class LightKind(IntEnum):
@@ -1271,7 +1277,16 @@ class DistributionReport:
     size: tuple[float, float, float]
     """Size of the luminous opening in metres: along C = 0°, along C = 90° and along the axis. As in IES files,
     negative values stand for a round opening: the absolute value is the diameter. IES files name the three
-    values length, width and height; EULUMDAT files name them width, length and height."""
+    values length, width and height; EULUMDAT and TM-33 files name them width, length and height."""
+    temperature: float
+    """Correlated colour temperature of the lamps in kelvin; 0 if unknown."""
+    rendering: float
+    """General colour rendering index Ra of the lamps; 0 if unknown."""
+    variants: int
+    """Number of variants of the product in a GLDF container; 1 for all other formats."""
+    emitters: int
+    """Number of light emitters in the file, or in the variant, whose distributions are added up; 1 for IES and
+    EULUMDAT."""
 
 
 class LightParams(TypedDict, total=False):

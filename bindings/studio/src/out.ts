@@ -10,7 +10,7 @@ const KINDS: [string, string, string][] = [
   ["exr", "Picture (EXR)", "linear, in cd/m²"],
   ["csv", "Lamps (CSV)", "the schedule: place in metres, size, cd/m², lumens, kelvin"],
   ["json", "Lamps (JSON)", "the schedule with the outlines of the lamps"],
-  ["photometry", "IES and LDT", "a zip with both files for each kind of lamp"],
+  ["photometry", "IES, LDT, TM-33, GLDF", "a zip with a file of each format for each kind of lamp"],
   ["room", "Unlit room (GLB)", "as the programs read it, also if it was opened as USD"],
   ["project", "Project (JSON)", "opens here again with the same result"],
   ["program", "Program (Python)", "does the same without the studio"],

@@ -58,7 +58,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     )
     room.add_argument("--task-on", action="append", default=[], metavar="OBJECT", help="a task area on an object")
     lamps = parser.add_argument_group("the luminaires")
-    lamps.add_argument("--product", metavar="FILE", help="photometry of the luminaires, .ies or .ldt")
+    lamps.add_argument("--product", metavar="FILE", help="photometry of the luminaires, " + options.LUMINAIRE)
     lamps.add_argument("--watts", type=float, default=0, help="power of a luminaire; without it that of the file")
     lamps.add_argument("--rendering", type=float, default=0, metavar="RA", help="colour rendering index Ra")
     lamps.add_argument(

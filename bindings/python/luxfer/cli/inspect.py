@@ -1,4 +1,4 @@
-"""Say what is in a scene, a picture or a luminaire file (.ies, .ldt)."""
+"""Say what is in a scene, a picture or a luminaire file (.ies, .ldt, .xml, .gldf)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LISTED = 8
 
 def add(parser: argparse.ArgumentParser) -> None:
     """The options."""
-    parser.add_argument("file", metavar="FILE", help=f"{options.SCENE}; {options.IMAGE}; or a luminaire, .ies or .ldt")
+    parser.add_argument("file", metavar="FILE", help=f"{options.SCENE}; {options.IMAGE}; or a luminaire, {options.LUMINAIRE}")
     options.add_units(parser)
     options.add_common(parser)
 
@@ -31,13 +31,14 @@ def add(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace, console: Console) -> Exit:
     """Prints what the file contains."""
     from . import files
+    from ..photometry import LUMINAIRES, luminaire_path
 
     context = files.context_of(args)
     if files.is_scene(args.file):
         scene = files.load_scene(context, args.file, args.units)
         result = of_scene(scene)
         return console.print_result({"command": "inspect", **result}, scene_words(result), files.scene_warnings(scene))
-    if args.file.lower().endswith((".ies", ".ldt")):
+    if luminaire_path(args.file).suffix.lower() in LUMINAIRES:
         result = of_luminaire(context, args.file)
         return console.print_result({"command": "inspect", **result}, luminaire_words(result))
     result = of_image(context, args.file)
@@ -178,6 +179,7 @@ def of_luminaire(context: Context, name: str) -> dict[str, Any]:
     return {
         "kind": "luminaire",
         "name": luminaire.name,
+        "variant_names": variants_of(context, name, report.variants),
         **dataclasses.asdict(report),
         "intensity_down_cd": down,
         "peak_cd": peak[0],
@@ -187,11 +189,27 @@ def of_luminaire(context: Context, name: str) -> dict[str, Any]:
     }
 
 
+def variants_of(context: Context, name: str, count: int) -> list[str | None]:
+    """Returns the names of the variants in a GLDF file; None for those that cannot be read."""
+    from .. import Distribution
+    from ..errors import Error
+    from ..photometry import luminaire_path
+
+    names: list[str | None] = []
+    for index in range(count if count > 1 else 0):
+        try:
+            with Distribution.load(context, luminaire_path(name), index) as variant:
+                names.append(variant.name)
+        except Error:
+            names.append(None)
+    return names
+
+
 def luminaire_words(found: dict[str, Any]) -> list[str]:
     """Describes a luminaire in lines."""
     power = f", {found['watts']:g} W, {found['lm_per_watt']:.0f} lm/W" if found["lm_per_watt"] else ""
     size = " x ".join(f"{abs(side):.3g}" for side in found["size"])
-    return [
+    lines = [
         f"luminaire: {found['name'] or '(no name)'}",
         f"{found['flux']:.0f} lm{power}; lamps {found['lamp_flux']:.0f} lm"
         if found["lamp_flux"]
@@ -200,3 +218,12 @@ def luminaire_words(found: dict[str, Any]) -> list[str]:
         f"{found['intensity_down_cd']:.0f} cd straight down, {found['peak_cd']:.0f} cd at C "
         f"{found['peak_c_degrees']}, gamma {found['peak_gamma_degrees']} degrees",
     ]
+    if found["temperature"] or found["rendering"]:
+        colours = [f"{found['temperature']:.0f} K"] if found["temperature"] else []
+        colours += [f"Ra {found['rendering']:.0f}"] if found["rendering"] else []
+        lines.append(f"lamps: {', '.join(colours)}")
+    if found["variant_names"]:
+        lines.append(f"{found['variants']} variants, chosen by #INDEX, #ID or #NAME after the file's name:")
+        for index, name in enumerate(found["variant_names"][:LISTED]):
+            lines.append(f"  #{index} {name if name is not None else '(cannot be read)'}")
+    return lines

@@ -14,6 +14,7 @@ CLEAN = 0.02
 
 SCENE = "a scene: .glb, .gltf, .usd, or demo:NAME of target-room, exemplar-room, sphere-on-table, still-life"
 IMAGE = "a picture: JPEG, PNG, WebP, TIFF, BMP, GIF, Radiance HDR or OpenEXR"
+LUMINAIRE = ".ies, .ldt, .xml (TM-33), or .gldf (#VARIANT after it chooses a variant)"
 
 
 def add_common(parser: argparse.ArgumentParser) -> None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..photometry import LUMINAIRES
 from ..scene import Scene
 from . import areas
 from .ifc_photometry import flux, ies, level
@@ -332,7 +333,7 @@ class _Model:
 
     def _beside(self, location: str | None) -> Path | None:
         """A photometric file in the folder of the model or below; files elsewhere are not opened."""
-        if not location or Path(location).suffix.lower() not in (".ies", ".ldt") or "://" in location:
+        if not location or Path(location).suffix.lower() not in LUMINAIRES or "://" in location:
             return None
         home = self.folder.resolve()
         path = (home / location.replace("\\", "/")).resolve()

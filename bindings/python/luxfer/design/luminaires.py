@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import math
 import os
+import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..errors import Error
-from ..photometry import Distribution
+from ..photometry import LUMINAIRES, Distribution, luminaire_path
 from ..scene import Scene
 
 if TYPE_CHECKING:
@@ -32,9 +33,9 @@ class Product:
     name: str
     """Name as the list of luminaires prints it."""
     photometry: bytes
-    """Bytes of its IES or EULUMDAT file."""
+    """Bytes of its IES, EULUMDAT or TM-33 file; those of a GLDF file are a EULUMDAT file of its variant."""
     format: str
-    """ "ies" or "ldt"."""
+    """ "ies", "ldt" or "tm33"."""
     flux: float
     """Luminous flux in lumens at full power."""
     watts: float = 0
@@ -55,12 +56,34 @@ class Product:
         watts: float = 0,
         rendering: float = 0,
     ) -> Product:
-        """A product from its .ies or .ldt file; watts of 0 are those of the file."""
-        file = Path(path)
+        """A product from its .ies, .ldt, .xml (TM-33) or .gldf file; watts and rendering of 0 are those of the file.
+        The name of a variant may follow that of a .gldf file, as in lamp.gldf#black."""
+        file = luminaire_path(path)
         kind = file.suffix.lower().lstrip(".")
-        if kind not in ("ies", "ldt"):
-            raise ValueError(f"{file.name} is no photometry that can be used: the name must end in .ies or .ldt")
+        if f".{kind}" not in LUMINAIRES:
+            allowed = ".ies, .ldt, .xml or .gldf"
+            raise ValueError(f"{file.name} is no photometry that can be used: the name must end in {allowed}")
+        if kind == "gldf":
+            return cls._of_container(context, path, name, watts, rendering)
+        kind = kind if kind in ("ies", "ldt") else "tm33"
         return cls.from_bytes(context, file.read_bytes(), kind, name or file.stem, watts, rendering)
+
+    @classmethod
+    def _of_container(
+        cls, context: Context, path: str | os.PathLike[str], name: str | None, watts: float, rendering: float
+    ) -> Product:
+        """A product from a variant of a GLDF file."""
+        file = luminaire_path(path)
+        file.stat()  # says that the file is missing as for the other formats
+        try:
+            with Distribution.load(context, path) as variant, tempfile.TemporaryDirectory() as folder:
+                data = Path(folder, "variant.ldt")
+                variant.save(data)
+                found, name = data.read_bytes(), name or variant.name or file.stem
+        except Error as error:
+            raise ValueError(f"the photometry of {file.name!r} cannot be used for a design: {error}") from error
+        product = cls.from_bytes(context, found, "ldt", name, watts, rendering)
+        return replace(product, reference=file.name + os.fspath(path)[len(os.fspath(file)) :])
 
     @classmethod
     def from_bytes(
@@ -74,7 +97,9 @@ class Product:
             raise ValueError(f"the photometry of {name!r} cannot be used for a design: {error}") from error
         if report.flux <= 0:
             raise ValueError(f"the photometry of {name!r} has no flux")
-        return cls(name, data, format, report.flux, watts or report.watts, rendering, report.size)
+        return cls(
+            name, data, format, report.flux, watts or report.watts, rendering or report.rendering, report.size
+        )
 
     @classmethod
     def panel(

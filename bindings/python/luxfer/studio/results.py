@@ -111,8 +111,8 @@ def _schedule(path: Path, wanted: Wanted, light: Light) -> None:
 
 
 def _photometry(path: Path, wanted: Wanted, light: Light) -> None:
-    """Writes IES and LDT files of each kind of whole lamp, with the means of its lamps: a flat diffuse opening, which
-    the lamps of the lit room are."""
+    """Writes an IES, LDT, TM-33 and GLDF file of each kind of whole lamp, with the means of its lamps: a flat diffuse
+    opening, which the lamps of the lit room are."""
     kinds: dict[int, list[luxfer.types.Fixture]] = {}
     for lamp in light.transfer.fixtures:
         if lamp.kind and mix.factor(wanted.project["mix"], lamp.kind) > 0:
@@ -127,10 +127,11 @@ def _photometry(path: Path, wanted: Wanted, light: Light) -> None:
             name = f"kind {letter(kind)}"
             product = Product.panel(light.context, length, width, flux, name)
             out.writestr(f"{name}.ies", product.photometry)
-            beside = path.with_name("one.ldt")
             with luxfer.Distribution.load_memory(light.context, product.photometry, "ies") as distribution:
-                distribution.save(beside)
-            out.writestr(f"{name}.ldt", beside.read_bytes())
+                for ending in ("ldt", "xml", "gldf"):
+                    beside = path.with_name(f"one.{ending}")
+                    distribution.save(beside)
+                    out.writestr(f"{name}.{ending}", beside.read_bytes())
 
 
 def letter(kind: int) -> str:

@@ -1,0 +1,224 @@
+//! Reads emitters: a photometry, the flux and the power of the lamps, and their colour.
+
+use super::super::luminaire::Luminaire;
+use super::super::sum::sum;
+use super::super::text_lines::MAX_BYTES;
+use super::super::xml::Element;
+use super::super::{ies, ldt, tm33};
+use super::container::Container;
+use super::names::path;
+use crate::error::{Error, ErrorKind, Result};
+
+/// Fluxes in a description are whole lumens: a smaller difference from the photometry's flux is rounding. [convention]
+const WHOLE_LUMEN: f64 = 1.0;
+/// The largest flux in lumens and power in watts. [convention]
+const MAX_FLUX: f64 = 1e12;
+const MAX_POWER: f64 = 1e9;
+
+/// The definitions of a product.
+pub struct Emitters<'a, 'b> {
+    pub container: &'b Container<'b>,
+    pub definitions: Element<'a>,
+}
+
+/// What the description says of an emitter's lamps; 0 if it says nothing.
+#[derive(Default)]
+struct Lamps {
+    flux: f64,
+    watts: f64,
+    temperature: f64,
+    rendering: f64,
+}
+
+impl<'a> Emitters<'a, '_> {
+    /// Finds a definition by its id.
+    fn find(&self, list: &str, kind: &str, id: &str) -> Result<Element<'a>> {
+        let found = self.definitions.find(list);
+        found.and_then(|list| list.all(kind).find(|e| e.attribute("id") == Some(id))).ok_or_else(|| {
+            let message = format!("{list} has no {kind} with the id {id:?}");
+            Error::format(message)
+        })
+    }
+
+    /// Follows a reference of `element`, such as `PhotometryReference` with its attribute `photometryId`.
+    fn follow(&self, element: Element, [name, attribute]: [&str; 2], [list, kind]: [&str; 2]) -> Result<Element<'a>> {
+        let reference = element.find(name).and_then(|reference| reference.attribute(attribute));
+        let Some(id) = reference else { return Err(element.error(format_args!("{name} with {attribute} is missing"))) };
+        self.find(list, kind, id)
+    }
+
+    /// Reads the emitter with an id. Of several light emitters in it, which can be exchanged for each other, the first
+    /// is read that shines in normal operation. Returns `None` if there is none, as in a sensor.
+    pub fn read(&self, id: &str) -> Result<Option<Luminaire>> {
+        let emitter = self.find("Emitters", "Emitter", id)?;
+        let is_normal = |e: &Element| e.attribute("emergencyBehaviour") != Some("EmergencyOnly");
+        let Some(light) = emitter.children().filter(is_normal).find(|e| e.name().ends_with("LightEmitter")) else {
+            return Ok(None);
+        };
+        let found = match light.name() {
+            "FixedLightEmitter" => self.fixed(light),
+            "ChangeableLightEmitter" => self.changeable(light),
+            "MultiChannelLightEmitter" => self.channels(light),
+            name => Err(light.error(format_args!("{name} is no kind of light emitter"))),
+        };
+        let mut luminaire = found.map_err(|e| e.context(format_args!("emitter {id:?}")))?;
+        turn(light, &mut luminaire)?;
+        Ok(Some(luminaire))
+    }
+
+    fn fixed(&self, light: Element) -> Result<Luminaire> {
+        let source = light.find("LightSourceReference").is_some().then(|| {
+            self.follow(light, ["LightSourceReference", "fixedLightSourceId"], ["LightSources", "FixedLightSource"])
+        });
+        let mut lamps = source.transpose()?.map(lamps).transpose()?.unwrap_or_default();
+        lamps.flux = light.number_at("RatedLuminousFlux", 0.0, MAX_FLUX)?.unwrap_or(0.0);
+        Ok(scaled(self.photometry(light)?, &lamps))
+    }
+
+    fn changeable(&self, light: Element) -> Result<Luminaire> {
+        let mut all = Lamps::default();
+        if light.find("EquipmentReference").is_some() {
+            let equipment = self.follow(light, ["EquipmentReference", "equipmentId"], ["Equipments", "Equipment"])?;
+            let reference = ["LightSourceReference", "changeableLightSourceId"];
+            let source = self.follow(equipment, reference, ["LightSources", "ChangeableLightSource"])?;
+            let count = equipment.find("LightSourceReference").map(|r| r.number_of("lightSourceCount", 1.0, 1e6));
+            let count = count.transpose()?.flatten().unwrap_or(1.0);
+            all = lamps(source)?;
+            all.flux = count * source.number_at("RatedLuminousFlux", 0.0, MAX_FLUX)?.unwrap_or(0.0);
+            all.watts = equipment.number_at("RatedInputPower", 0.0, MAX_POWER)?.unwrap_or(all.watts * count);
+        }
+        Ok(scaled(self.photometry(light)?, &all))
+    }
+
+    /// Adds the channels of a light source up, at full power.
+    fn channels(&self, light: Element) -> Result<Luminaire> {
+        let reference = ["LightSourceReference", "multiChannelLightSourceId"];
+        let source = self.follow(light, reference, ["LightSources", "MultiChannelLightSource"])?;
+        let mut parts = Vec::new();
+        for channel in source.find("Channels").into_iter().flat_map(|list| list.all("Channel")) {
+            let flux = channel.number_at("RatedLuminousFlux", 0.0, MAX_FLUX)?.unwrap_or(0.0);
+            parts.push(scaled(self.photometry(channel)?, &Lamps { flux, ..Lamps::default() }));
+        }
+        let mut luminaire = sum(parts)?;
+        let power = source.number_at("RatedInputPower", 0.0, MAX_POWER)?.unwrap_or(0.0);
+        if power > 0.0 {
+            luminaire.watts = power;
+        }
+        Ok(luminaire)
+    }
+
+    /// Reads the photometry that `element` refers to.
+    fn photometry(&self, element: Element) -> Result<Luminaire> {
+        let reference = ["PhotometryReference", "photometryId"];
+        let photometry = self.follow(element, reference, ["Photometries", "Photometry"])?;
+        let file = self.follow(photometry, ["PhotometryFileReference", "fileId"], ["Files", "File"])?;
+        let name = file.text();
+        if file.attribute("type") == Some("url") {
+            let message = format!("the photometry is not in the container but at {name:?}");
+            return Err(Error::new(ErrorKind::Unsupported, message));
+        }
+        let bytes = self.container.file(&path("ldc", name)?, MAX_BYTES)?;
+        let found = match file.attribute("contentType") {
+            Some("ldc/eulumdat") => ldt::read(&bytes),
+            Some("ldc/ies") => ies::read(&bytes),
+            Some("ldc/iesxml") => tm33::read(&bytes),
+            kind => {
+                let message = format!("the photometry has the content type {kind:?}");
+                Err(Error::new(ErrorKind::Unsupported, message))
+            }
+        };
+        found.map_err(|e| e.context(name))
+    }
+}
+
+/// Reads the power and the colours of a light source.
+fn lamps(source: Element) -> Result<Lamps> {
+    let number = |path: &str, high: f64| Ok(source.number_at(path, 0.0, high)?.unwrap_or(0.0));
+    Ok(Lamps {
+        flux: 0.0,
+        watts: number("RatedInputPower", MAX_POWER)?,
+        temperature: number("ColorInformation/CorrelatedColorTemperature", 1e6)?,
+        rendering: number("ColorInformation/ColorRenderingIndex", 100.0)?,
+    })
+}
+
+/// Returns the luminaire of a photometry with other lamps. Their flux scales the intensities; a photometry that states
+/// no lamps is scaled by its own flux.
+fn scaled(mut luminaire: Luminaire, lamps: &Lamps) -> Luminaire {
+    let measured = if luminaire.lamp_flux > 0.0 { luminaire.lamp_flux } else { luminaire.flux() };
+    if lamps.flux > 0.0 && measured > 0.0 && (lamps.flux - measured).abs() >= WHOLE_LUMEN {
+        let factor = lamps.flux / measured;
+        luminaire.candela.iter_mut().for_each(|v| *v *= factor);
+        luminaire.lamp_flux *= factor;
+    }
+    for (value, of_lamps) in [
+        (&mut luminaire.watts, lamps.watts),
+        (&mut luminaire.temperature, lamps.temperature),
+        (&mut luminaire.rendering, lamps.rendering),
+    ] {
+        if of_lamps > 0.0 {
+            *value = of_lamps;
+        }
+    }
+    luminaire
+}
+
+/// Turns a luminaire about its axis as the emitter demands, in whole degrees.
+fn turn(light: Element, luminaire: &mut Luminaire) -> Result<()> {
+    let angle = |name: &str| Ok(light.number_at(&format!("Rotation/{name}"), 0.0, 360.0)?.unwrap_or(0.0) % 360.0);
+    let [x, y, z, g0] = [angle("X")?, angle("Y")?, angle("Z")?, angle("G0")?];
+    if x != 0.0 || y != 0.0 {
+        let message = format!(
+            "line {}: the emitter is turned by {x} and {y} degrees about the axes X and Y; only turns about the axis Z \
+             are read",
+            light.line()
+        );
+        return Err(Error::new(ErrorKind::Unsupported, message));
+    }
+    let by = (z + g0) % 360.0;
+    let n = luminaire.gammas.len();
+    if by == 0.0 || luminaire.planes.len() == 1 {
+        return Ok(());
+    }
+    // Interpolate a plane at the turned zero, which the list of planes must have.
+    let zero: Vec<f64> = luminaire.gammas.iter().map(|gamma| luminaire.intensity(-by, *gamma)).collect();
+    let mut planes: Vec<(f64, Vec<f64>)> = luminaire
+        .planes
+        .iter()
+        .zip(luminaire.candela.chunks(n))
+        .map(|(c, values)| ((c + by) % 360.0, values.to_vec()))
+        .collect();
+    if planes.iter().all(|(c, _)| *c != 0.0) {
+        planes.push((0.0, zero));
+    }
+    planes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    luminaire.planes = planes.iter().map(|(c, _)| *c).collect();
+    luminaire.candela = planes.into_iter().flat_map(|(_, values)| values).collect();
+    Ok(())
+}
+
+/// Reads the opening of a luminaire, whose photometry states none, from the simple geometry of its variant.
+pub fn opening_of(definitions: Element, geometry: Element, luminaire: &mut Luminaire) -> Result<()> {
+    let inner = geometry.find("GeometryReferences").unwrap_or(geometry);
+    let id = inner.find("SimpleGeometryReference").and_then(|reference| reference.attribute("geometryId"));
+    let Some(id) = id else { return Ok(()) };
+    let shapes = definitions.find("Geometries").into_iter().flat_map(|list| list.all("SimpleGeometry"));
+    let Some(shape) = shapes.into_iter().find(|shape| shape.attribute("id") == Some(id)) else {
+        return Err(inner.error(format_args!("Geometries has no SimpleGeometry with the id {id:?}")));
+    };
+    let metres = |path: &str| Ok(shape.number_at(path, 0.0, 1e7)?.unwrap_or(0.0) / 1e3);
+    let mut heights = [0.0; 4];
+    for (height, name) in heights.iter_mut().zip(["C0", "C90", "C180", "C270"]) {
+        *height = metres(&format!("C-Heights/{name}"))?;
+    }
+    let height = heights.into_iter().fold(0.0, f64::max);
+    let diameter = metres("CircularEmitter/Diameter")?;
+    luminaire.size = if diameter > 0.0 {
+        [-diameter, -diameter, height]
+    } else {
+        // The width lies along X, towards C = 0, and the length along Y.
+        [metres("RectangularEmitter/Width")?, metres("RectangularEmitter/Length")?, height]
+    };
+    luminaire.side_heights = (diameter == 0.0 && heights.iter().any(|h| *h != height)).then_some(heights);
+    Ok(())
+}

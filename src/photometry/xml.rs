@@ -1,0 +1,238 @@
+//! Reads and writes the XML of luminaire files. The parser is `roxmltree`; this file bounds its input, so that a
+//! hostile file can demand neither much memory nor much time, and gives errors that name the line.
+//!
+//! Elements are found by their local names: files of different tools declare different namespaces.
+
+use super::text_lines::within;
+use crate::error::{Error, Result};
+use roxmltree::{Document, Node, ParsingOptions};
+use std::fmt::Write;
+
+/// Maximum size of a file in bytes, and maximum number of its nodes: elements, texts and comments. A distribution with
+/// an intensity every half degree takes a third of each. [convention]
+pub const MAX_BYTES: usize = 32 << 20;
+const MAX_NODES: u32 = 1 << 21;
+/// Maximum number of attributes of an element, and maximum number of declarations of namespaces in a file.
+/// [convention]
+const MAX_ATTRIBUTES: usize = 64;
+const MAX_NAMESPACES: usize = 256;
+
+/// Decodes the bytes of a file to text: UTF-8, UTF-16 with a byte order mark, or Latin-1.
+///
+/// # Errors
+/// `Format` if the file is too large or is damaged UTF-16.
+pub fn decode(bytes: &[u8]) -> Result<String> {
+    if bytes.len() > MAX_BYTES {
+        return Err(Error::format(format!("the XML has {} bytes; at most {MAX_BYTES} are read", bytes.len())));
+    }
+    let wide = |unit: fn([u8; 2]) -> u16| {
+        let units: Vec<u16> = bytes[2..].chunks_exact(2).map(|pair| unit([pair[0], pair[1]])).collect();
+        String::from_utf16(&units).map_err(|_| Error::format("the XML is damaged UTF-16"))
+    };
+    match bytes {
+        [0xff, 0xfe, ..] => wide(u16::from_le_bytes),
+        [0xfe, 0xff, ..] => wide(u16::from_be_bytes),
+        _ => Ok(match std::str::from_utf8(bytes) {
+            Ok(text) => text.trim_start_matches('\u{feff}').into(),
+            Err(_) => bytes.iter().map(|&b| char::from(b)).collect(),
+        }),
+    }
+}
+
+/// Parses a file.
+///
+/// # Errors
+/// `Format`, with the line, if the file is malformed, has a document type (which could define entities), or exceeds
+/// a limit of this module.
+pub fn parse(text: &str) -> Result<Document<'_>> {
+    check_tags(text)?;
+    if text.matches("xmlns").nth(MAX_NAMESPACES).is_some() {
+        return Err(Error::format(format!("the XML declares more than {MAX_NAMESPACES} namespaces")));
+    }
+    let options = ParsingOptions { allow_dtd: false, nodes_limit: MAX_NODES, ..ParsingOptions::default() };
+    Document::parse_with_options(text, options).map_err(|e| match e {
+        roxmltree::Error::NodesLimitReached => {
+            Error::format(format!("the XML has more than {MAX_NODES} elements and texts"))
+        }
+        e => Error::format(format!("line {}: {e}", e.pos().row)),
+    })
+}
+
+/// Refuses elements with too many attributes: the parser compares each attribute of an element with all others.
+fn check_tags(text: &str) -> Result<()> {
+    let mut rest = text;
+    while let Some(start) = rest.find('<') {
+        rest = &rest[start..];
+        let comments = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+        if let Some((_, end)) = comments.iter().find(|(begin, _)| rest.starts_with(begin)) {
+            rest = rest.find(end).map_or("", |at| &rest[at..]);
+            continue;
+        }
+        let (mut quote, mut attributes, mut length) = (None, 0, rest.len());
+        for (at, byte) in rest.bytes().enumerate() {
+            match (quote, byte) {
+                (Some(open), byte) if byte == open => quote = None,
+                (Some(_), _) => {}
+                (None, b'"' | b'\'') => quote = Some(byte),
+                (None, b'=') => attributes += 1,
+                (None, b'>') => {
+                    length = at;
+                    break;
+                }
+                _ => {}
+            }
+        }
+        if attributes > MAX_ATTRIBUTES {
+            let line = text[..text.len() - rest.len()].matches('\n').count() + 1;
+            let message =
+                format!("line {line}: an element has {attributes} attributes; at most {MAX_ATTRIBUTES} are read");
+            return Err(Error::format(message));
+        }
+        rest = &rest[length..];
+    }
+    Ok(())
+}
+
+/// An element of a parsed file.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element<'a>(Node<'a, 'a>);
+
+impl<'a> Element<'a> {
+    pub fn root(document: &'a Document<'a>) -> Self {
+        Self(document.root_element())
+    }
+
+    pub fn name(self) -> &'a str {
+        self.0.tag_name().name()
+    }
+
+    pub fn children(self) -> impl Iterator<Item = Self> {
+        self.0.children().filter(Node::is_element).map(Self)
+    }
+
+    /// The children with a name.
+    pub fn all<'n>(self, name: &'n str) -> impl Iterator<Item = Self> + use<'a, 'n> {
+        self.0.children().filter(move |child| child.is_element() && child.tag_name().name() == name).map(Self)
+    }
+
+    /// Follows the first children with these names, separated by slashes.
+    pub fn find(self, path: &str) -> Option<Self> {
+        path.split('/').try_fold(self, |element, name| element.all(name).next())
+    }
+
+    /// The element's text, trimmed; empty if it has none.
+    pub fn text(self) -> &'a str {
+        self.0.text().unwrap_or("").trim()
+    }
+
+    /// The element's text on one line: each run of blanks and line breaks becomes one blank.
+    pub fn line_of_text(self) -> String {
+        self.text().split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
+    /// The trimmed text of the element at a path; empty if there is none.
+    pub fn text_at(self, path: &str) -> &'a str {
+        self.find(path).map_or("", Self::text)
+    }
+
+    pub fn attribute(self, name: &str) -> Option<&'a str> {
+        self.0.attributes().find(|a| a.name() == name).map(|a| a.value().trim())
+    }
+
+    /// Parses the element's text as a number in `[low, high]`.
+    pub fn number(self, low: f64, high: f64) -> Result<f64> {
+        within(self.line(), self.text(), self.name(), low, high)
+    }
+
+    /// Parses the number at a path; `None` if the element is missing or empty.
+    pub fn number_at(self, path: &str, low: f64, high: f64) -> Result<Option<f64>> {
+        self.find(path).filter(|found| !found.text().is_empty()).map(|found| found.number(low, high)).transpose()
+    }
+
+    /// Parses an attribute as a number in `[low, high]`; `None` if it is missing.
+    pub fn number_of(self, name: &str, low: f64, high: f64) -> Result<Option<f64>> {
+        let parse = |word: &str| match word.parse() {
+            Ok(value) if value >= low && value <= high => Ok(value),
+            // Find the line only for the error's message: that takes a pass over the file.
+            _ => within(self.line(), word, name, low, high),
+        };
+        self.attribute(name).map(parse).transpose()
+    }
+
+    /// The line on which the element begins. Finding it takes a pass over the file.
+    pub fn line(self) -> usize {
+        self.0.document().text_pos_at(self.0.range().start).row as usize
+    }
+
+    /// Returns a `Format` error that names the line of the element.
+    pub fn error(self, message: impl std::fmt::Display) -> Error {
+        Error::format(format!("line {}: {message}", self.line()))
+    }
+}
+
+/// Escapes a text for the content of an element or for an attribute. Characters that XML does not allow become blanks.
+pub fn escape(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => out.push(' '),
+            c if c.is_control() => out.push(' '),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+/// Writes elements with an indentation of two blanks a level.
+pub struct Writer {
+    text: String,
+    open: Vec<&'static str>,
+}
+
+impl Writer {
+    pub fn new() -> Self {
+        Self { text: "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n".into(), open: Vec::new() }
+    }
+
+    fn indent(&mut self) {
+        self.text.extend(std::iter::repeat_n("  ", self.open.len()));
+    }
+
+    /// Begins an element; `attributes` is empty or begins with a blank.
+    pub fn begin(&mut self, name: &'static str, attributes: &str) {
+        self.indent();
+        let _ = writeln!(self.text, "<{name}{attributes}>");
+        self.open.push(name);
+    }
+
+    /// Ends the innermost element.
+    pub fn end(&mut self) {
+        if let Some(name) = self.open.pop() {
+            self.indent();
+            let _ = writeln!(self.text, "</{name}>");
+        }
+    }
+
+    /// Writes an element with a text, which is escaped; `attributes` is empty or begins with a blank.
+    pub fn leaf(&mut self, name: &str, attributes: &str, text: impl std::fmt::Display) {
+        self.indent();
+        let text = escape(&text.to_string());
+        let _ = if text.is_empty() {
+            writeln!(self.text, "<{name}{attributes}/>")
+        } else {
+            writeln!(self.text, "<{name}{attributes}>{text}</{name}>")
+        };
+    }
+
+    /// Ends all elements and returns the file.
+    pub fn finish(mut self) -> String {
+        while !self.open.is_empty() {
+            self.end();
+        }
+        self.text
+    }
+}
