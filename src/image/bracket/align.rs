@@ -28,6 +28,10 @@ const CLEARANCE: f64 = 0.02;
 /// [convention]
 const USABLE: [f32; 2] = [0.02, 0.97];
 
+/// Number of shifts that each level hands to the next finer one, because coarse levels may mislead. (The paper hands on
+/// one.)
+const KEPT: usize = 5;
+
 /// Number of bins for finding quantiles of the encoded values, which lie in `[0, 1]`.
 const BINS: usize = 1024;
 
@@ -73,27 +77,41 @@ fn pyramid_of(image: &Image, levels: usize, job: Job) -> Result<Vec<Image>> {
 /// Finds the shift from one photo to another, from the coarsest level to the finest.
 fn shift_between(from: &[Image], to: &[Image], max_shift: isize, job: Job) -> Result<[isize; 2]> {
     let Some(quantile) = common_quantile(&from[0], &to[0]) else { return Ok([0; 2]) };
-    let mut shift = [0isize; 2];
+    let mut kept = vec![[0isize; 2]];
+    let mut ranked = Vec::new();
     for (from, to) in from.iter().zip(to).rev() {
-        shift = shift.map(|s| 2 * s);
         let bitmaps = [Bitmap::new(from, quantile)?, Bitmap::new(to, quantile)?];
-        let candidates: Vec<[isize; 2]> = STEPS.iter().map(|step| [shift[0] + step[0], shift[1] + step[1]]).collect();
-        let counts = exec::map(STEPS.len(), job, |k| difference(&bitmaps, candidates[k]))?;
-        // Stay unless another shift is better by more than chance.
-        let part = |[differing, compared]: [usize; 2]| differing as f64 / compared.max(1) as f64;
-        let chance = SIGNIFICANT * (counts[0][0] as f64).sqrt() / counts[0][1].max(1) as f64;
-        let mut least = part(counts[0]) - chance;
-        for (candidate, &count) in candidates.iter().zip(&counts).skip(1) {
-            let is_near = candidate.iter().all(|s| s.abs() <= max_shift);
-            if is_near && 2 * count[1] > counts[0][1] && part(count) < least {
-                (shift, least) = (*candidate, part(count));
-            }
-        }
+        let candidates = refined(&kept, max_shift);
+        let counts = exec::map(candidates.len(), job, |k| difference(&bitmaps, candidates[k]))?;
+        ranked = candidates.into_iter().zip(counts).collect();
+        let unmoved = ranked[0].1;
+        ranked.retain(|(_, count)| 2 * count[1] > unmoved[1]);
+        ranked.sort_by(|a, b| part(a.1).total_cmp(&part(b.1))); // stable: the nearest of equal ones stay first
+        kept = ranked.iter().take(KEPT).map(|(shift, _)| *shift).collect();
     }
-    Ok(shift)
+    // The shift must be better than none by more than chance.
+    let unmoved = ranked.iter().find(|(shift, _)| *shift == [0; 2]).map_or([0, 1], |(_, count)| *count);
+    let chance = SIGNIFICANT * (unmoved[0] as f64).sqrt() / unmoved[1].max(1) as f64;
+    let best = ranked.first().filter(|(_, count)| part(*count) < part(unmoved) - chance);
+    Ok(best.map_or([0; 2], |(shift, _)| *shift))
 }
 
-/// The shifts that each level tries: none first, then those to the eight neighbours, the nearest first.
+/// The part of the compared pixels that differ.
+fn part([differing, compared]: [usize; 2]) -> f64 {
+    differing as f64 / compared.max(1) as f64
+}
+
+/// The shifts to try at the next finer level: none, and twice the kept ones with their neighbours, the nearest first.
+fn refined(kept: &[[isize; 2]], max_shift: isize) -> Vec<[isize; 2]> {
+    let around = kept.iter().flat_map(|shift| STEPS.map(|step| [2 * shift[0] + step[0], 2 * shift[1] + step[1]]));
+    let mut all: Vec<[isize; 2]> = around.filter(|shift| shift.iter().all(|s| s.abs() <= max_shift)).collect();
+    all.push([0; 2]);
+    all.sort_by_key(|shift| (shift[0] * shift[0] + shift[1] * shift[1], *shift));
+    all.dedup();
+    all
+}
+
+/// A shift and its eight neighbours.
 const STEPS: [[isize; 2]; 9] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
 
 /// The quantile whose value is neither black nor clipped in two photos: the median if possible. `None` if there is no

@@ -2,7 +2,8 @@
 //!
 //! The difference of the two exposures is averaged over 3 × 3 pixels, which a person or a leaf covers. It may have the
 //! measured deviation at its level of light, five standard deviations of the measured noise, the rounding of 8-bit
-//! codes, and the difference that a shift by half a pixel makes, because the alignment is by whole pixels.
+//! codes, and the difference that the remaining misalignment makes, at most half a pixel, because the alignment is by whole
+//! pixels. Its size is measured where the photos have edges.
 
 use super::frame::Frame;
 use super::noise::Noise;
@@ -23,6 +24,17 @@ const PREDICTED: f32 = 0.8;
 /// [convention: IEC 61966-2-1, 0.5 / 255 / 12.92 and 0.5 / 255 * 2.4 / 1.055]
 const HALF_CODE: [f32; 2] = [1.52e-4, 4.46e-3];
 
+/// The misalignment that is allowed, over its median at edges, and its largest value in pixels. [convention]
+const MISALIGNMENT: f32 = 3.0;
+const MAX_MISALIGNMENT: f32 = 0.5;
+
+/// A pixel is at an edge if the light of its neighbours differs by more than this part of its own. [convention]
+const EDGE: f32 = 0.1;
+
+/// Number of pixels on which the misalignment is measured, about, and at least.
+const EDGES: usize = 1 << 16;
+const MIN_EDGES: usize = 64;
+
 /// Distance by which the pixels of a disagreement are extended, in pixels: the fringes of what moved.
 const FRINGE: usize = 2;
 
@@ -37,8 +49,9 @@ pub fn disagreement(
 ) -> Result<Vec<u8>> {
     // For each pixel: the difference of the exposures, how far it may differ, and the variance of the noise.
     let mut found = Image::new(width, height, 3)?;
-    let pair = Pair { short, long, ratio, noise };
-    exec::for_rows(&mut found.data, 3 * width, job.part(0.0, 0.6), |y, row| {
+    let mut pair = Pair { short, long, ratio, noise, misalignment: 0.0 };
+    pair.misalignment = pair.measured_misalignment([width, height], job.part(0.0, 0.1))?;
+    exec::for_rows(&mut found.data, 3 * width, job.part(0.1, 0.6), |y, row| {
         for (x, out) in row.chunks_exact_mut(3).enumerate() {
             out.copy_from_slice(&pair.difference(x, y));
         }
@@ -59,6 +72,8 @@ struct Pair<'a> {
     long: &'a Frame<'a>,
     ratio: f32,
     noise: &'a Noise,
+    /// In pixels.
+    misalignment: f32,
 }
 
 impl Pair<'_> {
@@ -77,12 +92,36 @@ impl Pair<'_> {
         let [deviation, scatter] = self.noise.at(light);
         let difference =
             if is_clipped { PREDICTED * self.long.clip - self.ratio * s_peak } else { l - predicted - deviation };
-        let allowed = self.half_step(x, y, [s, l]) + half_code(self.long, l) + self.ratio * half_code(self.short, s);
+        let allowed = self.misalignment * self.steps(x, y, [s, l])
+            + half_code(self.long, l)
+            + self.ratio * half_code(self.short, s);
         [difference, allowed, scatter * scatter]
     }
 
-    /// The difference that a shift by half a pixel along both axes makes, at most, in the long exposure.
-    fn half_step(&self, x: usize, y: usize, [s, l]: [f32; 2]) -> f32 {
+    /// Measures the misalignment: the median difference at edges, relative to the steps of the light there.
+    fn measured_misalignment(&self, [width, height]: [usize; 2], job: Job) -> Result<f32> {
+        let step = ((width * height / EDGES) as f64).sqrt().ceil().max(1.0) as usize;
+        let rows = exec::map(height.div_ceil(step), job, |row| {
+            let y = row * step;
+            let at = |x: usize| {
+                let ([s, s_peak], [l, l_peak]) = (self.short.levels(x, y)?, self.long.levels(x, y)?);
+                let steps = self.steps(x, y, [s, l]);
+                let is_edge = s_peak < self.short.clip && l_peak < self.long.clip && steps > EDGE * l;
+                is_edge.then(|| (l - self.ratio * s).abs() / steps)
+            };
+            (0..width).step_by(step).filter_map(at).collect::<Vec<_>>()
+        })?;
+        let mut found = rows.concat();
+        if found.len() < MIN_EDGES {
+            return Ok(MAX_MISALIGNMENT);
+        }
+        let middle = found.len() / 2;
+        let median = *found.select_nth_unstable_by(middle, f32::total_cmp).1;
+        Ok((MISALIGNMENT * median).min(MAX_MISALIGNMENT))
+    }
+
+    /// The difference that a shift by one pixel along each of the axes makes, at most, in the long exposure.
+    fn steps(&self, x: usize, y: usize, [s, l]: [f32; 2]) -> f32 {
         let mut steps = [0.0f32; 2];
         for (axis, step) in steps.iter_mut().enumerate() {
             for offset in [-1, 1] {
@@ -93,7 +132,7 @@ impl Pair<'_> {
                 *step = step.max(of_short).max(of_long);
             }
         }
-        0.5 * (steps[0] + steps[1])
+        steps[0] + steps[1]
     }
 }
 

@@ -87,13 +87,13 @@ pub fn measure(samples: &[Sample], clip: f32) -> Option<Ratio> {
     if well.len() < MIN_PIXELS {
         return None;
     }
-    let mut weights = vec![1.0; well.len()];
+    let mut weights = vec![[1.0; 2]; well.len()];
     for _ in 0..STEPS {
         reweigh(&well, ratio, &mut weights);
         let sums = well
             .iter()
             .zip(&weights)
-            .fold([0.0; 2], |sums, (s, w)| [sums[0] + w * f64::from(s.long), sums[1] + w * f64::from(s.short)]);
+            .fold([0.0; 2], |sums, (s, [w, _])| [sums[0] + w * f64::from(s.long), sums[1] + w * f64::from(s.short)]);
         ratio = sums[0] / sums[1];
     }
     let error = error_of(&well, &weights, ratio)?;
@@ -127,8 +127,8 @@ fn is_well_exposed(s: &Sample, ratio: f64, clip: f32) -> bool {
 }
 
 /// Sets Tukey's weights for the residuals `long - ratio * short`, relative to the square root of their expected
-/// variance.
-fn reweigh(samples: &[Sample], ratio: f64, weights: &mut [f64]) {
+/// variance, and the slopes of the weighted residuals.
+fn reweigh(samples: &[Sample], ratio: f64, weights: &mut [[f64; 2]]) {
     let residual = |s: &Sample| {
         let (short, long) = (f64::from(s.short), f64::from(s.long));
         (long - ratio * short) / (ratio * (short + long)).sqrt()
@@ -139,22 +139,24 @@ fn reweigh(samples: &[Sample], ratio: f64, weights: &mut [f64]) {
     let limit = TUKEY * (MAD_TO_SIGMA * *median).max(MIN_SCATTER);
     for (weight, s) in weights.iter_mut().zip(samples) {
         let z = residual(s) / limit;
-        *weight = (1.0 - z * z).max(0.0).powi(2);
+        let inside = (1.0 - z * z).max(0.0);
+        *weight = [inside * inside, inside * (1.0 - 5.0 * z * z)];
     }
 }
 
-/// The standard error of the logarithm of the ratio, from the scatter between blocks (the jackknife of a ratio of sums);
-/// `None` if too few blocks have pixels.
-fn error_of(samples: &[Sample], weights: &[f64], ratio: f64) -> Option<f64> {
+/// The standard error of the logarithm of the ratio, from the scatter between blocks: the jackknife of an M-estimate,
+/// whose denominator is the sum of the slopes (Huber 1964). `None` if too few blocks have pixels.
+fn error_of(samples: &[Sample], weights: &[[f64; 2]], ratio: f64) -> Option<f64> {
     let mut blocks = [[0.0; 2]; BLOCKS * BLOCKS];
-    for (s, w) in samples.iter().zip(weights) {
+    for (s, [weight, slope]) in samples.iter().zip(weights) {
+        let (short, long) = (f64::from(s.short), f64::from(s.long));
         let block = &mut blocks[s.block as usize];
-        block[0] += w * f64::from(s.long);
-        block[1] += w * f64::from(s.short);
+        block[0] += weight * (long - ratio * short);
+        block[1] += slope * short;
     }
-    let count = blocks.iter().filter(|[_, short]| *short > 0.0).count();
+    let count = blocks.iter().filter(|[_, short]| *short != 0.0).count();
     let total: f64 = blocks.iter().map(|[_, short]| short).sum();
-    let scatter: f64 = blocks.iter().map(|[long, short]| (long - ratio * short).powi(2)).sum();
+    let scatter: f64 = blocks.iter().map(|[residual, _]| residual * residual).sum();
     let variance = count as f64 / (count as f64 - 1.0) * scatter / (ratio * total).powi(2);
     (count >= MIN_BLOCKS).then(|| variance.sqrt())
 }
