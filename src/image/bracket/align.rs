@@ -78,37 +78,52 @@ fn pyramid_of(image: &Image, levels: usize, job: Job) -> Result<Vec<Image>> {
 fn shift_between(from: &[Image], to: &[Image], max_shift: isize, job: Job) -> Result<[isize; 2]> {
     let Some(quantile) = common_quantile(&from[0], &to[0]) else { return Ok([0; 2]) };
     let mut kept = vec![[0isize; 2]];
-    let mut ranked = Vec::new();
-    for (from, to) in from.iter().zip(to).rev() {
+    for (from, to) in from.iter().zip(to).skip(1).rev() {
         let bitmaps = [Bitmap::new(from, quantile)?, Bitmap::new(to, quantile)?];
-        let candidates = refined(&kept, max_shift);
-        let counts = exec::map(candidates.len(), job, |k| difference(&bitmaps, candidates[k]))?;
-        ranked = candidates.into_iter().zip(counts).collect();
-        let unmoved = ranked[0].1;
-        ranked.retain(|(_, count)| 2 * count[1] > unmoved[1]);
-        ranked.sort_by(|a, b| part(a.1).total_cmp(&part(b.1))); // stable: the nearest of equal ones stay first
-        kept = ranked.iter().take(KEPT).map(|(shift, _)| *shift).collect();
+        let found = ranked(&bitmaps, &doubled(&kept), max_shift, job)?;
+        kept = found.iter().take(KEPT).map(|(shift, _)| *shift).collect();
+    }
+    // At full size, go on to the best neighbour as long as it is better.
+    let bitmaps = [Bitmap::new(&from[0], quantile)?, Bitmap::new(&to[0], quantile)?];
+    let mut best = ranked(&bitmaps, &doubled(&kept), max_shift, job)?[0];
+    loop {
+        let next = ranked(&bitmaps, &[best.0], max_shift, job)?[0];
+        if part(next.1) >= part(best.1) {
+            break;
+        }
+        best = next;
     }
     // The shift must be better than none by more than chance.
-    let unmoved = ranked.iter().find(|(shift, _)| *shift == [0; 2]).map_or([0, 1], |(_, count)| *count);
+    let unmoved = difference(&bitmaps, [0; 2]);
     let chance = SIGNIFICANT * (unmoved[0] as f64).sqrt() / unmoved[1].max(1) as f64;
-    let best = ranked.first().filter(|(_, count)| part(*count) < part(unmoved) - chance);
-    Ok(best.map_or([0; 2], |(shift, _)| *shift))
+    Ok(if part(best.1) < part(unmoved) - chance { best.0 } else { [0; 2] })
+}
+
+/// A shift, and the numbers of pixels that differ and that were compared.
+type Counted = ([isize; 2], [usize; 2]);
+
+/// Tries no shift, and the shifts `around` with their neighbours; the best first, and of equal ones the smallest.
+fn ranked(bitmaps: &[Bitmap; 2], around: &[[isize; 2]], max_shift: isize, job: Job) -> Result<Vec<Counted>> {
+    let all = around.iter().flat_map(|shift| STEPS.map(|step| [shift[0] + step[0], shift[1] + step[1]]));
+    let mut shifts: Vec<[isize; 2]> = all.filter(|shift| shift.iter().all(|s| s.abs() <= max_shift)).collect();
+    shifts.push([0; 2]);
+    shifts.sort_by_key(|shift| (shift[0] * shift[0] + shift[1] * shift[1], *shift));
+    shifts.dedup();
+    let counts = exec::map(shifts.len(), job, |k| difference(bitmaps, shifts[k]))?;
+    let compared = counts[0][1];
+    let mut found: Vec<Counted> =
+        shifts.into_iter().zip(counts).filter(|(_, count)| 2 * count[1] >= compared).collect();
+    found.sort_by(|a, b| part(a.1).total_cmp(&part(b.1)));
+    Ok(found)
+}
+
+fn doubled(shifts: &[[isize; 2]]) -> Vec<[isize; 2]> {
+    shifts.iter().map(|shift| shift.map(|s| 2 * s)).collect()
 }
 
 /// The part of the compared pixels that differ.
 fn part([differing, compared]: [usize; 2]) -> f64 {
     differing as f64 / compared.max(1) as f64
-}
-
-/// The shifts to try at the next finer level: none, and twice the kept ones with their neighbours, the nearest first.
-fn refined(kept: &[[isize; 2]], max_shift: isize) -> Vec<[isize; 2]> {
-    let around = kept.iter().flat_map(|shift| STEPS.map(|step| [2 * shift[0] + step[0], 2 * shift[1] + step[1]]));
-    let mut all: Vec<[isize; 2]> = around.filter(|shift| shift.iter().all(|s| s.abs() <= max_shift)).collect();
-    all.push([0; 2]);
-    all.sort_by_key(|shift| (shift[0] * shift[0] + shift[1] * shift[1], *shift));
-    all.dedup();
-    all
 }
 
 /// A shift and its eight neighbours.
