@@ -43,7 +43,7 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
     check(photos, params)?;
     let [first, ..] = photos else { return Err(Error::argument("count is 0")) };
     if photos.len() == 1 {
-        return Ok((first.try_clone()?, of_one(first, params)));
+        return Ok((first.try_clone()?, of_one(first, &metadata[0], params)));
     }
     let mut frames: Vec<Frame> = photos.iter().map(|image| Frame::new(image, params.saturation)).collect();
     let reference = params.reference.map_or_else(|| best_exposed(&frames, job), Ok)?;
@@ -100,11 +100,12 @@ fn check(photos: &[&Image], params: &Params) -> Result<()> {
 }
 
 /// The report about a single photo.
-fn of_one(image: &Image, params: &Params) -> Report {
+fn of_one(image: &Image, metadata: &PhotoMetadata, params: &Params) -> Report {
     let frame = Frame::new(image, params.saturation);
     let pixels = image.data.chunks_exact(image.channels);
     let clipped = pixels.filter(|pixel| frame::peak(pixel) >= frame.clip).count();
-    let photo = PhotoReport { exposure: 1.0, stated: 1.0, ..PhotoReport::default() };
+    let stated = exposures::stated_ratio(metadata, metadata).unwrap_or(0.0);
+    let photo = PhotoReport { exposure: 1.0, stated, ..PhotoReport::default() };
     Report { photos: vec![photo], clipped: clipped as f64 / (image.width * image.height) as f64, ..Report::default() }
 }
 

@@ -2,8 +2,8 @@
 //!
 //! The difference of the two exposures is averaged over 3 × 3 pixels, which a person or a leaf covers. It may have the
 //! measured deviation at its level of light, five standard deviations of the measured noise, the rounding of 8-bit
-//! codes, and the difference that the remaining misalignment makes, at most half a pixel, because the alignment is by whole
-//! pixels. Its size is measured where the photos have edges.
+//! codes, and the difference that the remaining misalignment makes, at most half a pixel, because the alignment is by
+//! whole pixels. Its size is measured where the photos have edges.
 
 use super::frame::Frame;
 use super::noise::Noise;
