@@ -403,3 +403,27 @@ fn a_cancelled_merge_ends_with_an_error() {
     let error = merge(&all, &[PhotoMetadata::default(); 3], &Params::default(), monitor.job()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Cancelled);
 }
+
+#[test]
+fn a_tone_curve_of_the_camera_contradicts_the_metadata() {
+    let (_, mut photos) = three(160, 120, 12);
+    for photo in &mut photos {
+        for v in &mut photo.data {
+            let code = linear_to_srgb(*v);
+            *v = srgb_to_linear(code - 0.08 * (std::f32::consts::TAU * code).sin());
+        }
+    }
+    let all: Vec<&Image> = photos.iter().collect();
+    let times = [1.0, 0.25, 0.0625].map(with_time);
+    let error = run(&all, &times, &Params::default()).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::InvalidArgument);
+    assert!(error.message.contains("not linear"), "{error}");
+    for source in [Source::Metadata, Source::Pixels] {
+        // The exposures differ, so the result keeps to the reference where that is not clipped.
+        let params = Params { source, reference: Some(0), ..Params::default() };
+        let (image, report) = run(&all, &times, &params).unwrap();
+        let shown = image.data.iter().zip(&photos[0].data).filter(|(_, p)| (0.05..0.7).contains(*p));
+        let worst = shown.map(|(v, p)| (v / p - 1.0).abs()).fold(0.0, f32::max);
+        assert!(worst < 0.2, "{source:?}: {worst}");
+    }
+}
