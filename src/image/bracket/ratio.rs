@@ -59,8 +59,9 @@ pub struct Sample {
     /// Light in the two photos.
     pub short: f32,
     pub long: f32,
-    /// Sum of the largest channels in the two photos.
-    peak: f32,
+    /// Largest channels in the two photos.
+    short_peak: f32,
+    long_peak: f32,
     block: u32,
 }
 
@@ -73,7 +74,7 @@ pub fn samples(short: &Frame, long: &Frame, [width, height]: [usize; 2], job: Jo
             let ([s, s_peak], [l, l_peak]) = (short.levels(x, y)?, long.levels(x, y)?);
             let is_open = s_peak < short.clip && l_peak < long.clip && s > 0.0 && l > 0.0;
             let block = (y * BLOCKS / height * BLOCKS + x * BLOCKS / width) as u32;
-            is_open.then_some(Sample { short: s, long: l, peak: s_peak + l_peak, block })
+            is_open.then_some(Sample { short: s, long: l, short_peak: s_peak, long_peak: l_peak, block })
         };
         (0..width).step_by(step).filter_map(sample).collect::<Vec<_>>()
     })?;
@@ -119,19 +120,22 @@ fn first_guess(samples: &[Sample]) -> Option<f64> {
     Some((LOG_RANGE[0] + (bin as f64 + 0.5) * width).exp())
 }
 
-/// Whether a pixel is well exposed in both photos, as far as the sum of its values tells.
+/// Whether a pixel is well exposed in both photos, as far as the sum of its values tells. Besides, the short exposure
+/// must not predict a clipped value: at the edges of lamps, one photo may show the lamp and the other its surroundings.
 fn is_well_exposed(s: &Sample, ratio: f64, clip: f32) -> bool {
     let short = f64::from(s.short + s.long) / (1.0 + ratio);
-    let long_peak = f64::from(s.peak) * ratio / (1.0 + ratio);
-    short >= WELL_EXPOSED[0] && long_peak < WELL_EXPOSED[1] * f64::from(clip)
+    let long_peak = f64::from(s.short_peak + s.long_peak) * ratio / (1.0 + ratio);
+    let is_open = ratio * f64::from(s.short_peak) < f64::from(clip);
+    is_open && short >= WELL_EXPOSED[0] && long_peak < WELL_EXPOSED[1] * f64::from(clip)
 }
 
 /// Sets Tukey's weights for the residuals `long - ratio * short`, relative to the square root of their expected
-/// variance, and the slopes of the weighted residuals.
+/// variance, and the slopes of the weighted residuals. The variance depends equally on what both photos say of the
+/// light, so that edges that lie differently in the photos have no preferred sign.
 fn reweigh(samples: &[Sample], ratio: f64, weights: &mut [[f64; 2]]) {
     let residual = |s: &Sample| {
         let (short, long) = (f64::from(s.short), f64::from(s.long));
-        (long - ratio * short) / (ratio * (short + long)).sqrt()
+        (long - ratio * short) / (long + ratio * short).sqrt()
     };
     let mut sizes: Vec<f64> = samples.iter().map(|s| residual(s).abs()).collect();
     let middle = sizes.len() / 2;

@@ -427,3 +427,28 @@ fn a_tone_curve_of_the_camera_contradicts_the_metadata() {
         assert!(worst < 0.2, "{source:?}: {worst}");
     }
 }
+
+#[test]
+fn shifts_by_parts_of_a_pixel_are_not_taken_for_motion() {
+    // A room in quarters of a pixel; the second photo is shifted by (1.5, 0.75) pixels, the third by (-0.5, 0.25).
+    let fine = room(800, 640, 13);
+    let size = [180, 140];
+    let photos: Vec<Image> = [[20, 20], [26, 23], [18, 21]]
+        .iter()
+        .enumerate()
+        .map(|(k, corner)| {
+            let scene = Image::from_fn(size[0], size[1], |x, y| {
+                let quarters = (0..16).map(|i| fine.rgb(4 * x + corner[0] + i % 4, 4 * y + corner[1] + i / 4));
+                (quarters.sum::<glam::Vec3>() / 16.0).to_array()
+            })
+            .unwrap();
+            CAMERA.shoot(&scene, 0.25f64.powi(k as i32), [0, 0], size, 60 + k as u64)
+        })
+        .collect();
+    let (_, report) = merged(&photos, &Params { reference: Some(0), ..Params::default() }).unwrap();
+    assert!(report.moved < 0.01, "{report:?}");
+    let [_, second, third] = report.photos[..] else { panic!("three photos") };
+    assert!((second.exposure / 0.25).ln().abs() < 4.0 * second.error.max(0.003), "{report:?}");
+    assert!((-2..=-1).contains(&second.shift[0]) && (-1..=0).contains(&second.shift[1]), "{report:?}");
+    assert!((0..=1).contains(&third.shift[0]) && (-1..=0).contains(&third.shift[1]), "{report:?}");
+}
