@@ -40,7 +40,7 @@ const WELL_EXPOSED: [f32; 2] = [0.02, 0.8];
 
 /// Merges photos of one view. `metadata` are those of the photos.
 pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job: Job) -> Result<(Image, Report)> {
-    check(photos, params)?;
+    check(photos, params, job)?;
     let [first, ..] = photos else { return Err(Error::argument("count is 0")) };
     if photos.len() == 1 {
         return Ok((first.try_clone()?, of_one(first, &metadata[0], params)));
@@ -75,9 +75,10 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
 }
 
 /// Checks settings and photos.
-fn check(photos: &[&Image], params: &Params) -> Result<()> {
+fn check(photos: &[&Image], params: &Params, job: Job) -> Result<()> {
     params.check(photos.len())?;
     for (i, photo) in photos.iter().enumerate() {
+        job.check()?;
         let name = format!("photos[{i}]");
         if !matches!(photo.channels, 1 | 3 | 4) {
             return Err(Error::argument(format!("{name} has {} channels; it must have 1, 3 or 4", photo.channels)));
