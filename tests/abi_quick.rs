@@ -116,7 +116,7 @@ fn requirements(scene: *mut luxfer_scene) {
 }
 
 /// Every quick call that works in parallel and needs no long preparation, with its name.
-const CALLS: [(&str, fn(&Objects)); 9] = [
+const CALLS: [(&str, fn(&Objects)); 10] = [
     ("luxfer_scene_intersect, 1 ray", |o| assert_eq!(trace(o.scene, 1), 2.0)),
     ("luxfer_scene_intersect, 10000 rays", |o| assert_eq!(trace(o.scene, 10_000), 2.0)),
     ("luxfer_scene_get_requirements", |o| requirements(o.scene)),
@@ -128,6 +128,15 @@ const CALLS: [(&str, fn(&Objects)); 9] = [
     ("luxfer_image_warp", |o| {
         let same = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
         new_image(o.context, |out| unsafe { luxfer_image_warp(o.image, same.as_ptr(), 8, 8, out) });
+    }),
+    ("luxfer_image_merge_exposures", |o| {
+        let (photos, mut params) = ([o.image; 2], unsafe { std::mem::zeroed::<luxfer_merge_params>() });
+        let size = size_of_val(&params);
+        assert_eq!(unsafe { luxfer_init(LUXFER_STRUCT_MERGE_PARAMS, (&raw mut params).cast(), size) }, LUXFER_OK);
+        (params.exposures[0], params.exposures[1]) = (1.0, 2.0);
+        new_image(o.context, |out| unsafe {
+            luxfer_image_merge_exposures(o.context, photos.as_ptr(), 2, &params, out, null_mut(), 0)
+        });
     }),
     ("luxfer_image_false_colour", |o| {
         new_image(o.context, |out| unsafe { luxfer_image_false_colour(o.image, null(), out) });

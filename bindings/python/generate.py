@@ -71,11 +71,11 @@ def uncomment(text: str) -> str:
 
 def declaration(text: str, doc: str = "") -> Field:
     """Parses a declaration such as `const float *points` or `double corners[4][2]`."""
-    match = re.fullmatch(r"(?:const )?(?:struct )?(\w+)\s*(\**)\s*(?:const\s+)?(\w+)((?:\[\d+\])*)", text.strip())
+    match = re.fullmatch(r"(?:const )?(?:struct )?(\w+)\s*((?:\*\s*(?:const\s+)?)*)(\w+)((?:\[\d+\])*)", text.strip())
     if not match:
         raise SystemExit(f"cannot read the declaration {text!r}")
     kind, stars, name, dims = match.groups()
-    return Field(name, kind, len(stars), [int(n) for n in re.findall(r"\d+", dims)], doc)
+    return Field(name, kind, stars.count("*"), [int(n) for n in re.findall(r"\d+", dims)], doc)
 
 
 def parameters(text: str) -> list[Field]:

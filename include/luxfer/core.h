@@ -204,6 +204,9 @@ typedef int32_t luxfer_struct_type;
 /** The luxfer_pendants_params. */
 #define LUXFER_STRUCT_PENDANTS_PARAMS 28
 
+/** The luxfer_merge_params. */
+#define LUXFER_STRUCT_MERGE_PARAMS 29
+
 /**
  * Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
  * struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
@@ -577,6 +580,127 @@ typedef struct luxfer_photo_metadata {
 luxfer_status luxfer_image_get_metadata(luxfer_image *image,
                                         luxfer_photo_metadata *metadata,
                                         size_t size);
+
+/* ==================================================================================================================
+ * Exposures of one view
+ *
+ * Merges a bracket: photos of one view with different exposures. Photos of lit rooms clip at the lamps, so their
+ * colours and luminances are lost; the merged image takes them from the shorter exposures. Pass it on as the photo.
+ *
+ * One of the photos is the reference. The merged image has its frame, its scale (the value 1 is its white) and its
+ * metadata, so that luxfer_photo_metadata.white_luminance holds for the merged image too. Values above 1 are what the
+ * reference shows clipped.
+ *
+ * The photos must be linear once they are loaded, as developed raw files and photos with the sRGB curve are. Where a
+ * camera applied another tone curve, the ratio of two exposures depends on the brightness, and lamps become too bright
+ * or too dark.
+ * ================================================================================================================== */
+
+/** Where the exposures of photos come from: a LUXFER_EXPOSURE_SOURCE_ value. */
+typedef int32_t luxfer_exposure_source;
+
+/** Settings for merging exposures. Fill them with luxfer_merge_params_init. */
+typedef struct luxfer_merge_params {
+    /** sizeof(luxfer_merge_params), set by luxfer_merge_params_init. */
+    uint32_t struct_size;
+    /**
+     * Where the exposures come from, unless the field exposures states them: a LUXFER_EXPOSURE_SOURCE_ value; default
+     * LUXFER_EXPOSURE_SOURCE_BOTH.
+     */
+    luxfer_exposure_source source;
+    /** Index of the reference; -1, the default: the photo with the most pixels that are well exposed. */
+    int32_t reference;
+    /**
+     * 0, the default: where exposures disagree beyond noise, because something moved, only those are used that agree
+     * with the reference; 1: all are averaged.
+     */
+    uint32_t keep_moving;
+    /**
+     * Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
+     * default 0.03. 0: the photos are not aligned, as for a camera on a tripod.
+     */
+    double max_shift;
+    /**
+     * Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2 has a
+     * high dynamic range and is nowhere clipped.
+     */
+    double saturation;
+    /**
+     * Exposure of each photo in any unit, such as seconds, in (0, 1e9]; all 0, the default: see the field source.
+     * Elements beyond the number of photos must be 0.
+     */
+    double exposures[16];
+} luxfer_merge_params;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_merge_params_init(luxfer_merge_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_MERGE_PARAMS, place, size);
+}
+
+/**
+ * What luxfer_image_merge_exposures found. Arrays have an element for each photo, in the order of the photos; further
+ * elements are 0.
+ */
+typedef struct luxfer_merge_report {
+    /** sizeof(luxfer_merge_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of photos. */
+    uint32_t count;
+    /** Index of the reference. */
+    uint32_t reference;
+    /** Reserved; always 0. */
+    uint32_t reserved;
+    /**
+     * Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values are lower bounds:
+     * those of the shortest exposure.
+     */
+    double clipped;
+    /** Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]. */
+    double moved;
+    /** Exposure of each photo relative to the reference. */
+    double exposures[16];
+    /** Relative standard error of each exposure; 0 if params->exposures states it. */
+    double errors[16];
+    /** Exposure of each photo relative to the reference according to the metadata; 0 = unknown. */
+    double stated[16];
+    /** Column of each photo that shows the same as column 0 of the reference. */
+    int32_t shift_x[16];
+    /** Row of each photo that shows the same as row 0 of the reference. */
+    int32_t shift_y[16];
+} luxfer_merge_report;
+
+/**
+ * From the metadata and the pixels, weighted by their errors; from one of them where the other is missing. It is an
+ * error if they contradict each other by more than a third of a stop.
+ */
+#define LUXFER_EXPOSURE_SOURCE_BOTH 0
+
+/** From the exposure time, ISO speed and f-number in the files. */
+#define LUXFER_EXPOSURE_SOURCE_METADATA 1
+
+/** From pixels that two neighbouring exposures both show well. */
+#define LUXFER_EXPOSURE_SOURCE_PIXELS 2
+
+/**
+ * Merges count photos of one view, in [1, 16], in any order, into one image. The photos have one size and one number
+ * of channels (1, 3 or 4; alpha is that of the reference). They may be shifted by whole pixels, as photos from the
+ * hand are; rotations and things that move cost only the use of other exposures in their places. params may be NULL
+ * for the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is synchronous.
+ * The caller releases *image. Any thread.
+ *
+ * The estimate of a pixel is the sum of its values divided by the sum of their exposures, which has the least noise
+ * that photons allow. Exposures fade out towards clipping. A single photo is returned as it is.
+ * LUXFER_INVALID_ARGUMENT if a setting or a photo is not as stated, if samples are NaN or infinite, or if metadata and
+ * pixels contradict each other (the message states both); LUXFER_DEGENERATE if exposures are unknown and cannot be
+ * measured, because too few pixels are well exposed in two neighbours; LUXFER_OUT_OF_MEMORY beyond the memory budget.
+ */
+luxfer_status luxfer_image_merge_exposures(luxfer_context *context,
+                                           luxfer_image *const *photos,
+                                           size_t count,
+                                           const luxfer_merge_params *params,
+                                           luxfer_image **image,
+                                           luxfer_merge_report *report,
+                                           size_t size);
 
 /* ==================================================================================================================
  * Depth map

@@ -216,8 +216,20 @@ impl Pixels {
         channels: usize,
         make: impl FnOnce() -> Result<Image>,
     ) -> Result<Arc<Self>> {
+        Self::photo(context, width, height, channels, || Ok((make()?, PhotoMetadata::default())))
+    }
+
+    /// Like [`counted`](Self::counted), for an image with the metadata of a photo.
+    pub(super) fn photo(
+        context: &Arc<Context>,
+        width: usize,
+        height: usize,
+        channels: usize,
+        make: impl FnOnce() -> Result<(Image, PhotoMetadata)>,
+    ) -> Result<Arc<Self>> {
         let charge = context.charge(cost(width, height, channels))?;
-        Ok(Self::own(context, make()?, charge, PhotoMetadata::default()))
+        let (image, metadata) = make()?;
+        Ok(Self::own(context, image, charge, metadata))
     }
 
     /// Creates the object of an image that is part of a stage's result; the object and the result share the pixels.

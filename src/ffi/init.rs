@@ -7,6 +7,7 @@
 use super::context::luxfer_context_params;
 use super::demo_photo::luxfer_demo_photo_params;
 use super::emission::luxfer_emission_params;
+use super::exposures::luxfer_merge_params;
 use super::false_colour::luxfer_false_colour_params;
 use super::features::luxfer_features_params;
 use super::guard::guard;
@@ -97,6 +98,8 @@ pub const LUXFER_STRUCT_RENDER_PART: luxfer_struct_type = 26;
 pub const LUXFER_STRUCT_DEMO_PHOTO_PARAMS: luxfer_struct_type = 27;
 /// The struct luxfer_pendants_params.
 pub const LUXFER_STRUCT_PENDANTS_PARAMS: luxfer_struct_type = 28;
+/// The struct luxfer_merge_params.
+pub const LUXFER_STRUCT_MERGE_PARAMS: luxfer_struct_type = 29;
 
 /// Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
 /// struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
@@ -142,6 +145,7 @@ pub unsafe extern "C" fn luxfer_init(
         LUXFER_STRUCT_RENDER_PART => params::init::<luxfer_render_part>(place.cast(), size),
         LUXFER_STRUCT_DEMO_PHOTO_PARAMS => params::init::<luxfer_demo_photo_params>(place.cast(), size),
         LUXFER_STRUCT_PENDANTS_PARAMS => params::init::<luxfer_pendants_params>(place.cast(), size),
+        LUXFER_STRUCT_MERGE_PARAMS => params::init::<luxfer_merge_params>(place.cast(), size),
         other => Err(Error::argument(format!("the type of the struct is {other}; it must be a LUXFER_STRUCT_ value"))),
     })
 }

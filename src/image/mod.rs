@@ -4,6 +4,7 @@
 //! in cd/m². Only this module decodes and encodes sRGB. Pixel `(x, y)` covers `[x, x+1) × [y, y+1)`: the centre of the
 //! top-left pixel is (0.5, 0.5), and rows run downwards.
 
+pub mod bracket;
 mod buffer;
 pub mod colour;
 mod comparison;

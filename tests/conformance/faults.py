@@ -188,6 +188,9 @@ def renumber(calls: list[Call], offset: int) -> None:
         elif argument[0] == "struct":
             for value in argument[2].values():
                 walk(value)
+        elif argument[0] == "handles":
+            for handle in argument[1]:
+                walk(handle)
 
     for call in calls:
         for argument in call[1:]:

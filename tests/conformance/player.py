@@ -145,6 +145,10 @@ class Player:
         if kind == "object":
             known = self.handles.get(rest[0])
             return known[1] if known else None
+        if kind == "handles":
+            handles = (ctypes.c_void_p * (ROOM // ctypes.sizeof(ctypes.c_void_p)))()
+            handles[: len(rest[0])] = [self.value(handle) for handle in rest[0]]
+            return self.memory(handles)
         if kind == "new":
             return self.memory(ctypes.c_void_p(0))
         if kind == "bytes":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from script import SETTINGS, Argument, Call, Script, array, report, struct, view
+from script import SETTINGS, Argument, Call, Script, array, handles, report, struct, view
 
 ROOM = ["room", 0x5A]
 
@@ -81,6 +81,9 @@ def images() -> Scenario:
     s.make("image_load", s.context, "a.exr", 0)
     s.make("image_load_memory", s.context, b"\x89PNG\r\n\x1a\n" + bytes(32), 40, 1)
     s.call("homography_from_corners", s.context, array("double", 0, 0, 1, 0, 1, 1, 0, 1), array("double", 0, 0, 9, 1, 8, 7, 1, 6), ROOM)
+    place, _ = s.new()
+    settings = struct("merge_params", exposures=array("double", 1, 2, *[0] * 14))
+    s.call("image_merge_exposures", s.context, handles(image, s.image()), 2, settings, place, *report("merge_report"))
     s.make("image_warp", image, array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1), 7, 5)
     return s
 

@@ -6,6 +6,7 @@ A program is a list of calls; a call is [function, argument...]. The arguments:
     ["callback", name]         a callback of player.py
     ["null"]                   NULL
     ["object", k]              the handle with the number k; NULL if it was never created, or is released
+    ["handles", [argument...]] pointer to handles, each an object or NULL
     ["new", k]                 pointer to where the call writes a new handle, which gets the number k
     ["bytes", hex]             pointer to these bytes (a text or a file), followed by a zero byte
     ["array", type, [n...]]    pointer to numbers of a ctypes type
@@ -71,6 +72,10 @@ def view(width: int, height: int, channels: int = 3, fill: float = 0.5, **fields
     return struct(
         "image_view", width=width, height=height, channels=channels, byte_size=4 * len(pixels), data=array("float", *pixels), **fields
     )
+
+
+def handles(*objects: Argument) -> Argument:
+    return ["handles", list(objects)]
 
 
 class Script:

@@ -367,6 +367,23 @@ void views_of_memory() {
     CHECK(ok(ok(image.warp(identity, 2, 2)).samples()) == samples);
 }
 
+// Merges two exposures of one view: what the long one clips comes from the short one.
+void exposures_merge() {
+    const Context context = new_context();
+    const std::vector<float> bright = {0.2f, 0.4f, 1.0f, 0.1f}, dark = {0.05f, 0.1f, 0.5f, 0.025f};
+    const std::array<Image, 2> photos = {ok(Image::create(context, luxfer::ConstImageView(bright, 2, 2, 1))),
+                                         ok(Image::create(context, luxfer::ConstImageView(dark, 2, 2, 1)))};
+    luxfer::MergeParams params;
+    params.exposures[0] = 4;
+    params.exposures[1] = 1;
+    params.reference = 0;
+    const Image::Merged merged = ok(Image::merge_exposures(context, photos, params));
+    const std::vector<float> samples = ok(merged.image.samples());
+    CHECK(std::abs(samples[0] - 0.2f) < 1e-6f && std::abs(samples[2] - 2.0f) < 1e-6f);
+    CHECK(merged.report.count == 2 && merged.report.exposures[1] == 0.25 && merged.report.clipped == 0);
+    CHECK_ERROR(Image::merge_exposures(context, {}), LUXFER_INVALID_ARGUMENT);
+}
+
 // Writes a scene to a file in memory and reads it back.
 void scenes_come_back() {
     const Context context = new_context();
@@ -572,6 +589,7 @@ int main() {
 #endif
     photos_say_what_their_cameras_wrote();
     views_of_memory();
+    exposures_merge();
     scenes_come_back();
     layers_have_names();
     lights_have_names();

@@ -194,6 +194,14 @@ class Transfer(Cli):
         marked = shown[place["y"], place["x"]]
         self.assertEqual(tuple(marked), (255, 0, 200))
 
+    def test_further_exposures_of_the_photo(self):
+        photo = luxfer.Image.load(context(), self.path("photo.png"))
+        photo.save(str(self.folder / "dark.png"), 0.25)  # darker, but clipped no less: it is no shorter exposure
+        words = ("transfer", self.path("photo.png"), self.path("room.glb"), "--exposures", str(self.folder / "dark.png"))
+        result = self.json(*words, "--preview-masks", "m.png")
+        self.assertEqual([w["code"] for w in result["warnings"] if w["stage"] == "exposures"], [])
+        self.error(3, *words, "missing.png", "--preview-masks", "m.png")
+
     def test_strokes_as_text_and_a_surface(self):
         text = "plane 6 120 40 60 40\nnot-plane 6 120 150\n"
         (self.folder / "strokes.txt").write_text(text)

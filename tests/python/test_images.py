@@ -168,6 +168,43 @@ class Images(Case):
         ):
             self.assertEqual((view.focal, view.focal_source), (300, luxfer.types.FocalSource.GIVEN))
 
+    def test_exposures_merge_into_the_photo_of_the_reference(self):
+        """Three exposures of a view whose right half is a lamp, with the times that a camera writes."""
+        height, width = 48, 64
+        scene = np.random.default_rng(5).uniform(0.05, 0.5, (height, width))
+        scene[:, 40:] *= 20
+
+        def shot(time, exposure):
+            linear = np.clip(scene * exposure, 0, 1)
+            encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+            picture = [(256, 3, width), (257, 3, height), (258, 3, 8), (262, 3, 1), (273, 4, 200), (279, 4, scene.size), (0x8769, 4, 120)]
+            camera = [(0x829A, 5, time), *EXPOSURE[1:]]
+            file = tiff(picture, np.rint(encoded * 255).astype(np.uint8).tobytes(), camera)
+            return luxfer.Image.from_bytes(context(), file)
+
+        photos = [shot((1, 60), 0.0625), shot((1, 4), 1.0), shot((1, 15), 0.25)]
+        merged, found = luxfer.merge_exposures(context(), photos, reference=1)
+        self.assertEqual((found.reference, found.count, len(found.exposures)), (1, 3, 3))
+        np.testing.assert_allclose(found.exposures, [1 / 16, 1, 1 / 4], rtol=5e-3)
+        np.testing.assert_allclose(found.stated, [1 / 15, 1, 4 / 15], rtol=1e-6)
+        self.assertEqual((found.shift_x, found.shift_y, found.clipped), ((0, 0, 0), (0, 0, 0), 0))
+        ratios = merged.numpy()[:, :, 0] / scene
+        self.assertLess(abs(ratios[:, 40:].mean() - 1), 0.01)
+        self.assertLess(abs(ratios[:, :38].mean() - 1), 0.01)
+        self.assertEqual(merged.metadata, photos[1].metadata)
+        self.assertAlmostEqual(merged.metadata.white_luminance, 240 / 50 * 4)
+
+        self.assertEqual(luxfer.merge_exposures(context(), photos[:1])[0].numpy().tobytes(), photos[0].numpy().tobytes())
+        with self.assertRaisesRegex(errors.InvalidArgument, r"photos\[0\] and photos\[1\].*ratio 15.0000.*LUXFER_EXPOSURE_SOURCE_PIXELS"):
+            luxfer.merge_exposures(context(), [photos[0], shot((1, 4), 0.25)])
+        for count in (0, 17):
+            with self.assertRaisesRegex(errors.InvalidArgument, f"count is {count}"):
+                luxfer.merge_exposures(context(), [photos[0]] * count)
+        with self.assertRaisesRegex(ValueError, "2 values for 3 photos"):
+            luxfer.merge_exposures(context(), photos, exposures=[1, 2])
+        with self.assertRaisesRegex(errors.InvalidArgument, r"photos\[1\] is 8 x 8 and photos\[0\] is 64 x 48"):
+            luxfer.merge_exposures(context(), [photos[0], np.ones((8, 8, 1))])
+
     def test_many_channels(self):
         photo = luxfer.Image(context(), np.random.default_rng(3).random((24, 32, 3)))
         channels = luxfer.Features(context(), photo).run().image().numpy()

@@ -81,6 +81,7 @@ Result<std::string> get_text(luxfer_context *context, luxfer_status (*function)(
 
 } // namespace detail
 
+using MergeParams = Params<luxfer_merge_params, LUXFER_STRUCT_MERGE_PARAMS>;
 using ContextParams = Params<luxfer_context_params, LUXFER_STRUCT_CONTEXT_PARAMS>;
 
 /// Owns the worker threads, a memory budget and the error messages; all other objects are created in it. See
@@ -235,6 +236,13 @@ public:
         return value<luxfer_photo_metadata>(luxfer_image_get_metadata);
     }
 
+    /// The merged image of several exposures, and what the merge found.
+    struct Merged;
+
+    /// Merges photos of one view with different exposures into one image; see luxfer_image_merge_exposures.
+    static Result<Merged> merge_exposures(const Context &context, Span<const Image> photos,
+                                          const luxfer_merge_params &params = MergeParams());
+
     /// Writes the image into the caller's pixels.
     Result<> read(const ImageView &view, std::uint32_t first_channel = 0) const {
         return call(luxfer_image_read, first_channel, &view);
@@ -257,6 +265,23 @@ public:
         return make<Image>(luxfer_image_warp, to_source.data(), width, height);
     }
 };
+
+struct Image::Merged {
+    Image image;
+    luxfer_merge_report report;
+};
+
+inline Result<Image::Merged> Image::merge_exposures(const Context &context, Span<const Image> photos,
+                                                    const luxfer_merge_params &params) {
+    std::vector<luxfer_image *> handles;
+    for (const Image &photo : photos)
+        handles.push_back(photo.get());
+    luxfer_image *made = nullptr;
+    luxfer_merge_report report = {};
+    const luxfer_status status = luxfer_image_merge_exposures(context.get(), handles.data(), handles.size(), &params,
+                                                              &made, &report, sizeof report);
+    return detail::to_result(context.get(), status, Merged{Image(context, made), report});
+}
 
 /// Computes the homography that maps four points to four points; the arrays hold x and y of each point. Returns its
 /// matrix row by row.

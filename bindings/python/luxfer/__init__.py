@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from .features import Features
     from .guides import Guides
     from .illuminance import Illuminance
-    from .image import Image, homography
+    from .image import Image, homography, merge_exposures
     from .importance import Importance
     from .job import Job, Task
     from .lamps import Lamps
@@ -87,6 +87,7 @@ __all__ = [
     "glare",
     "homography",
     "library",
+    "merge_exposures",
     "mix_primaries",
     "presets",
     "print_sheet",
@@ -101,6 +102,7 @@ _MODULES = {
     "SurfaceCandidate": "candidate",
     "DemoPhoto": "demo",
     "homography": "image",
+    "merge_exposures": "image",
     "Task": "job",
     "find_pendants": "pendant",
     "StageWarning": "warning",

@@ -55,6 +55,7 @@ LUXFER_STRUCT_PLAN_PARAMS = 25
 LUXFER_STRUCT_RENDER_PART = 26
 LUXFER_STRUCT_DEMO_PHOTO_PARAMS = 27
 LUXFER_STRUCT_PENDANTS_PARAMS = 28
+LUXFER_STRUCT_MERGE_PARAMS = 29
 LUXFER_VIEW_BOTTOM_UP = 1
 LUXFER_SAMPLE_U8 = 0
 LUXFER_SAMPLE_U16 = 1
@@ -68,6 +69,9 @@ LUXFER_FILE_COLOUR_STATED = 2
 LUXFER_FILE_COLOUR_CONVERTED = 3
 LUXFER_FILE_COLOUR_UNCONVERTED = 4
 LUXFER_FILE_COLOUR_DATA = 5
+LUXFER_EXPOSURE_SOURCE_BOTH = 0
+LUXFER_EXPOSURE_SOURCE_METADATA = 1
+LUXFER_EXPOSURE_SOURCE_PIXELS = 2
 LUXFER_DEPTH_ALONG_Z = 0
 LUXFER_DEPTH_ALONG_RAY = 1
 LUXFER_PHASE_PLANE = 0
@@ -464,6 +468,42 @@ class luxfer_photo_metadata(Structure):
     ]
     enumerations: dict[str, type] = {"colour": types.FileColour}
     result = types.PhotoMetadata
+
+
+class luxfer_merge_params(Structure):
+    """Settings for merging exposures."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("source", c_int32),
+        ("reference", c_int32),
+        ("keep_moving", c_uint32),
+        ("max_shift", c_double),
+        ("saturation", c_double),
+        ("exposures", c_double * 16),
+    ]
+    enumerations: dict[str, type] = {"source": types.ExposureSource}
+    struct_type = LUXFER_STRUCT_MERGE_PARAMS
+
+
+class luxfer_merge_report(Structure):
+    """What luxfer_image_merge_exposures found. Arrays have an element for each photo, in the order of the
+    photos; further elements are 0."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("count", c_uint32),
+        ("reference", c_uint32),
+        ("reserved", c_uint32),
+        ("clipped", c_double),
+        ("moved", c_double),
+        ("exposures", c_double * 16),
+        ("errors", c_double * 16),
+        ("stated", c_double * 16),
+        ("shift_x", c_int32 * 16),
+        ("shift_y", c_int32 * 16),
+    ]
+    result = types.MergeReport
 
 
 class luxfer_scene_counts(Structure):
@@ -1585,6 +1625,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_image_get_size": (c_int32, [("image", POINTER(luxfer_image)), ("width", POINTER(c_uint32)), ("height", POINTER(c_uint32)), ("channels", POINTER(c_uint32))]),
     "luxfer_image_read": (c_int32, [("image", POINTER(luxfer_image)), ("first_channel", c_uint32), ("view", POINTER(luxfer_image_view))]),
     "luxfer_image_get_metadata": (c_int32, [("image", POINTER(luxfer_image)), ("metadata", POINTER(luxfer_photo_metadata)), ("size", c_size_t)]),
+    "luxfer_image_merge_exposures": (c_int32, [("context", POINTER(luxfer_context)), ("photos", POINTER(POINTER(luxfer_image))), ("count", c_size_t), ("params", POINTER(luxfer_merge_params)), ("image", POINTER(POINTER(luxfer_image))), ("report", POINTER(luxfer_merge_report)), ("size", c_size_t)]),
     "luxfer_strokes_create": (c_int32, [("context", POINTER(luxfer_context)), ("width", c_uint32), ("height", c_uint32), ("strokes", POINTER(POINTER(luxfer_strokes)))]),
     "luxfer_strokes_add": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("phase", c_int32), ("points", POINTER(c_float)), ("point_count", c_size_t), ("radius", c_float), ("positive", c_int32)]),
     "luxfer_strokes_add_image": (c_int32, [("strokes", POINTER(luxfer_strokes)), ("drawing", POINTER(luxfer_image))]),

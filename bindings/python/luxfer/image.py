@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import dataclasses
 import os
 from typing import TYPE_CHECKING, Any, Union, cast
 
@@ -11,14 +12,23 @@ import numpy as np
 from . import _abi, _arrays, _params
 from ._handle import Handle, call
 from ._pointers import POINTER
-from .types import ColourSpace, PhotoMetadata
+from .types import ColourSpace, MergeReport, PhotoMetadata
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, DTypeLike, NDArray
 
+    from typing_extensions import Unpack
+
     from .context import Context
+    from .types import MergeParams
 
     ImageLike = Union["Image", ArrayLike]
+
+
+#: Number of elements of the arrays about the photos that merge_exposures merges, at most.
+MAX_EXPOSURES = 16
 
 
 class Image(Handle):
@@ -146,6 +156,38 @@ def homography(context: Context, source: ArrayLike, target: ArrayLike) -> NDArra
     pointers = [_arrays.pointer(a, ctypes.c_double) for a in (*points, out)]
     call(context, "luxfer_homography_from_corners", context, *pointers)
     return out
+
+
+def merge_exposures(
+    context: Context, photos: Sequence[ImageLike], **params: Unpack[MergeParams]
+) -> tuple[Image, MergeReport]:
+    """Merges photos of one view with different exposures into one image, whose lamps are not clipped. Returns the image
+    and what the merge found; the arrays of the report have an element for each photo. `exposures` states the exposure
+    of each photo, in any unit; without it, the metadata and the pixels do.
+
+    >>> photo = np.random.default_rng(1).uniform(0.01, 0.9, (64, 64, 1)).repeat(3, 2).astype(np.float32)
+    >>> merged, report = merge_exposures(context, [photo, photo / 4], exposures=[4, 1])
+    >>> merged.size, report.exposures[1] / report.exposures[0]
+    ((64, 64, 3), 0.25)
+    """
+    exposures = list(params.get("exposures", ()))
+    if exposures and len(exposures) != len(photos):
+        raise ValueError(f"exposures has {len(exposures)} values for {len(photos)} photos")
+    padded = {**params, "exposures": exposures + [0.0] * (MAX_EXPOSURES - len(exposures))}
+    if len(photos) > MAX_EXPOSURES:
+        padded["exposures"] = [0.0] * MAX_EXPOSURES  # the library refuses so many photos
+    settings = _params.fill(_abi.luxfer_merge_params, padded, [])
+    images = [image_of(context, photo) for photo in photos]
+    handles = (POINTER(_abi.luxfer_image) * max(1, len(images)))(*(image.handle for image in images))
+    handle, report = POINTER(_abi.luxfer_image)(), _abi.luxfer_merge_report()
+    call(
+        context, "luxfer_image_merge_exposures", context, handles, len(images), settings, handle, report,
+        ctypes.sizeof(report),
+    )  # fmt: skip
+    found = cast(MergeReport, _params.report(report))
+    arrays = ("exposures", "errors", "stated", "shift_x", "shift_y")
+    short = {name: getattr(found, name)[: found.count] for name in arrays}
+    return Image._adopt(context, handle), dataclasses.replace(found, **short)
 
 
 def made(context: Context, name: str, *arguments: Any) -> Image:

@@ -88,6 +88,18 @@ class FileColour(IntEnum):
     """The image was loaded with ColourSpace.LINEAR. Its samples are unchanged."""
 
 
+class ExposureSource(IntEnum):
+    """Where the exposures of photos come from."""
+
+    BOTH = 0
+    """From the metadata and the pixels, weighted by their errors; from one of them where the other is missing.
+    It is an error if they contradict each other by more than a third of a stop."""
+    METADATA = 1
+    """From the exposure time, ISO speed and f-number in the files."""
+    PIXELS = 2
+    """From pixels that two neighbouring exposures both show well."""
+
+
 class DepthKind(IntEnum):
     """Quantity that a depth map measures."""
 
@@ -1094,6 +1106,54 @@ class PhotoMetadata:
     exposure index (ISO 12232), with which the manufacturer chooses the luminance at which the camera clips."""
     colour: FileColour
     """How the colours of the file were interpreted: FileColour."""
+
+
+class MergeParams(TypedDict, total=False):
+    """Settings for merging exposures."""
+
+    source: ExposureSource | str | int
+    """Where the exposures come from, unless the field exposures states them: ExposureSource; default
+    ExposureSource.BOTH."""
+    reference: int
+    """Index of the reference; -1, the default: the photo with the most pixels that are well exposed."""
+    keep_moving: int
+    """0, the default: where exposures disagree beyond noise, because something moved, only those are used that
+    agree with the reference; 1: all are averaged."""
+    max_shift: float
+    """Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
+    default 0.03. 0: the photos are not aligned, as for a camera on a tripod."""
+    saturation: float
+    """Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2
+    has a high dynamic range and is nowhere clipped."""
+    exposures: Sequence[float]
+    """Exposure of each photo in any unit, such as seconds, in (0, 1e9]; all 0, the default: see the field
+    source. Elements beyond the number of photos must be 0."""
+
+
+@dataclass(frozen=True)
+class MergeReport:
+    """What luxfer_image_merge_exposures found. Arrays have an element for each photo, in the order of the
+    photos; further elements are 0."""
+
+    count: int
+    """Number of photos."""
+    reference: int
+    """Index of the reference."""
+    clipped: float
+    """Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values are lower
+    bounds: those of the shortest exposure."""
+    moved: float
+    """Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]."""
+    exposures: tuple[float, ...]
+    """Exposure of each photo relative to the reference."""
+    errors: tuple[float, ...]
+    """Relative standard error of each exposure; 0 if params->exposures states it."""
+    stated: tuple[float, ...]
+    """Exposure of each photo relative to the reference according to the metadata; 0 = unknown."""
+    shift_x: tuple[int, ...]
+    """Column of each photo that shows the same as column 0 of the reference."""
+    shift_y: tuple[int, ...]
+    """Row of each photo that shows the same as row 0 of the reference."""
 
 
 @dataclass(frozen=True)

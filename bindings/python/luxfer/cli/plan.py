@@ -38,7 +38,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     options.add_camera(parser)
     options.add_units(parser)
     options.add_common(parser)
-    parser.set_defaults(white=None, distance=None, quality="good")
+    parser.set_defaults(white=None, distance=None, quality="good", exposures=None)
 
 
 def run(args: argparse.Namespace, console: Console) -> Exit:

@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import options, values
+from . import bracket, options, values
 from .console import Console, as_json, described_stages, percent
 from .exits import Exit, usage
 
@@ -37,6 +37,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """The options."""
     parser.add_argument("photo", metavar="PHOTO", help=f"{options.IMAGE}, or demo:photo")
     parser.add_argument("scene", metavar="SCENE", help=options.SCENE)
+    bracket.add(parser)
     parser.add_argument("--strokes", metavar="FILE", help="a drawing, a text (.txt), or demo:strokes")
     parser.add_argument(
         "--surface", metavar="NAME", help="object or material that receives the lights; default: the likeliest ceiling"
@@ -91,7 +92,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         raise usage("--out is missing: nothing would be written; give --out FOLDER, or --preview-masks FILE.png")
     if args.out and args.preview_masks:
         raise usage("--preview-masks only draws the masks: leave --out out")
-    inputs = files.shared_input(args.photo, args.scene, args.strokes)
+    inputs = files.shared_input(args.photo, args.scene, args.strokes, *(args.exposures or ()))
     out = files.check_folder("--out", args.out, inputs, FILES) if args.out else None
     preview = (
         files.check_file("--preview-masks", args.preview_masks, inputs, (".png",)) if args.preview_masks else None
@@ -119,11 +120,12 @@ class Start:
     def __init__(self, context: Context, args: argparse.Namespace) -> None:
         from . import files
 
-        self.photo = files.load_image(context, args.photo)
+        self.photo, self.merge = bracket.load(context, args.photo, args.exposures)
         self.scene = files.load_scene(context, args.scene, args.units)
         self.strokes = files.load_strokes(context, args.strokes, self.photo) if args.strokes else None
         self.surface, self.warnings = files.likeliest_surface(self.scene, args.surface)
         self.warnings = files.scene_warnings(self.scene) + self.warnings
+        self.warnings += bracket.doubts(self.merge) if self.merge else []
         self.white = args.white or WHITE
         self.settings: dict[str, Any] = {
             "max_texels": TEXELS.get(args.quality if args.time is None and args.error is None else "good", 2048),
@@ -222,6 +224,7 @@ def facts(transfer: Transfer, start: Start, lit: Any, masks: dict[str, Any]) -> 
         "command": "transfer",
         "surface": start.surface,
         "masks": {key: value for key, value in masks.items() if key != "next_stroke"},
+        **({"bracket": bracket.facts(start.merge)} if start.merge else {}),
         "plane_distance_m": report.plane_distance,
         "plane_distance_error": report.plane_distance_error,
         "texture_error": report.emission_error,
@@ -239,6 +242,7 @@ def words(transfer: Transfer, start: Start, lit: Any) -> list[str]:
     if report.plane_distance_error > 0:
         distance += f" (estimated, ± {percent(report.plane_distance_error)}; --distance sets it)"
     return [
+        *([bracket.words(start.merge)] if start.merge else []),
         f'surface "{start.surface}", {distance}',
         f"texture off the photo's lamps by {percent(report.emission_error)}; "
         f"strength known to {percent(report.relight_error)}",

@@ -1,0 +1,70 @@
+"""The option --exposures: further exposures of the photo, which show its lamps unclipped."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any
+
+from .console import doubt, percent
+
+if TYPE_CHECKING:
+    from ..context import Context
+    from ..image import Image
+    from ..types import MergeReport
+
+#: Parts of the pixels beyond which a warning names clipped and moved pixels.
+MANY_CLIPPED, MANY_MOVED = 0.001, 0.1
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Adds --exposures."""
+    parser.add_argument(
+        "--exposures",
+        nargs="+",
+        metavar="FILE",
+        help="further exposures of PHOTO's view, in any order: what PHOTO shows clipped, such as lamps, comes from the "
+        "shorter ones; give it after PHOTO and SCENE",
+    )
+
+
+def load(context: Context, photo: str, exposures: list[str] | None) -> tuple[Image, MergeReport | None]:
+    """Loads the photo and merges it with its further exposures. The merged image has the photo's frame and white."""
+    from ..image import merge_exposures
+    from . import files
+
+    first = files.load_image(context, photo)
+    if not exposures:
+        return first, None
+    return merge_exposures(context, [first, *(files.load_image(context, name) for name in exposures)], reference=0)
+
+
+def facts(report: MergeReport) -> dict[str, Any]:
+    """Returns what the merge found in the form in which JSON shows it."""
+    return {
+        "exposures": list(report.exposures),
+        "exposure_errors": list(report.errors),
+        "shifts": [list(shift) for shift in zip(report.shift_x, report.shift_y)],
+        "clipped": report.clipped,
+        "moved": report.moved,
+    }
+
+
+def words(report: MergeReport) -> str:
+    """Describes the merge in a line."""
+    others = ", ".join(f"{1 / e:.3g}" if e < 1 else f"1/{e:.3g}" for e in report.exposures[1:])
+    return (
+        f"photo merged with exposures shorter by {others}; {percent(report.clipped)} of it still clipped, "
+        f"{percent(report.moved)} moved"
+    )
+
+
+def doubts(report: MergeReport) -> list[dict[str, Any]]:
+    """Returns the warnings about a merge."""
+    out = []
+    if report.clipped > MANY_CLIPPED:
+        message = f"{percent(report.clipped)} of the pixels are clipped in every exposure"
+        out.append(doubt("exposures", "clipped", message, "add a shorter exposure"))
+    if report.moved > MANY_MOVED:
+        message = f"the exposures disagree on {percent(report.moved)} of the pixels"
+        out.append(doubt("exposures", "moved", message, "use photos from a tripod, developed with the same settings"))
+    return out

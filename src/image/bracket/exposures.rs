@@ -1,0 +1,121 @@
+//! The relative exposures of a bracket, from the caller, the metadata and the pixels.
+
+use super::frame::{Frame, light};
+use super::params::{Params, Source};
+use super::ratio::Ratio;
+use crate::error::{Error, Result};
+use crate::image::photo::PhotoMetadata;
+
+/// Standard deviation of the logarithm of a ratio that metadata state: shutter times, f-numbers and speeds are rounded
+/// to the names of the series, such as 1/15 s for 1/16 s and f/5.6 for f/5.66. [convention: ISO 516, ISO 12232]
+const ROUNDING: f64 = 0.05;
+
+/// Metadata and pixels contradict each other if the logarithms of their ratios differ by more than this, a third of a
+/// stop, the finest step of most cameras, and by more than this many standard errors of the measurement. [convention]
+const MAX_CONTRADICTION: f64 = std::f64::consts::LN_2 / 3.0;
+const SIGNIFICANT: f64 = 3.0;
+
+/// Returns the ratio of the exposures `b` / `a` that metadata state: t S / N², with the exposure time t, the ISO speed
+/// S and the f-number N. S and N may be missing in both photos (adapted lenses record no N).
+pub fn stated_ratio(a: &PhotoMetadata, b: &PhotoMetadata) -> Option<f64> {
+    let ratio = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        (Some(a), Some(b)) => Some(b / a),
+        (None, None) => Some(1.0),
+        _ => None,
+    };
+    let time = b.exposure_time? / a.exposure_time?;
+    Some(time * ratio(a.iso, b.iso)? / ratio(a.f_number, b.f_number)?.powi(2))
+}
+
+/// Returns the indices of the photos in the order of their exposures, the shortest first: by the caller's exposures, by
+/// the metadata, or else by brightness.
+pub fn order(frames: &[Frame], metadata: &[PhotoMetadata], params: &Params) -> Vec<usize> {
+    let stated = || -> Option<Vec<f64>> { metadata.iter().map(|m| stated_ratio(&metadata[0], m)).collect() };
+    let keys = if !params.exposures.is_empty() {
+        params.exposures.clone()
+    } else {
+        let stated = if params.source == Source::Pixels { None } else { stated() };
+        stated.unwrap_or_else(|| frames.iter().map(brightness).collect())
+    };
+    let mut order: Vec<usize> = (0..frames.len()).collect();
+    order.sort_by(|&a, &b| keys[a].total_cmp(&keys[b]));
+    order
+}
+
+/// The mean light of a photo, clipped at 1.
+fn brightness(frame: &Frame) -> f64 {
+    let pixels = frame.image.data.chunks_exact(frame.image.channels);
+    pixels.map(|pixel| f64::from(light(pixel).min(1.0))).sum::<f64>() / (frame.image.data.len() as f64)
+}
+
+/// Two neighbours in the order of exposure: their indices, and the ratio of their exposures that the metadata state.
+pub struct Pair {
+    pub short: usize,
+    pub long: usize,
+    pub stated: Option<f64>,
+}
+
+impl Pair {
+    /// Decides on the ratio of the exposures from all that is known about it.
+    pub fn ratio(&self, measured: Option<Ratio>, params: &Params) -> Result<Ratio> {
+        if !params.exposures.is_empty() {
+            let log = (params.exposures[self.long] / params.exposures[self.short]).ln();
+            return Ok(Ratio { log, error: 0.0 });
+        }
+        let stated = self.stated.map(|ratio| Ratio { log: ratio.ln(), error: ROUNDING });
+        match (params.source, stated, measured) {
+            (Source::Metadata, Some(ratio), _) | (Source::Both, Some(ratio), None) => Ok(ratio),
+            (Source::Pixels, _, Some(ratio)) | (Source::Both, None, Some(ratio)) => Ok(ratio),
+            (Source::Both, Some(stated), Some(measured)) => self.combined(stated, measured),
+            (Source::Metadata, None, _) => Err(Error::argument(format!(
+                "source is LUXFER_EXPOSURE_SOURCE_METADATA, but the files of photos[{}] and photos[{}] do not state \
+                 their exposure times; set params.exposures, or take LUXFER_EXPOSURE_SOURCE_PIXELS",
+                self.short, self.long
+            ))),
+            (Source::Pixels, _, None) | (Source::Both, None, None) => Err(Error::degenerate(format!(
+                "the exposures of photos[{}] and photos[{}] are unknown, and too few of their pixels are well exposed in \
+                 both to measure them; set params.exposures, or add a photo with an exposure in between",
+                self.short, self.long
+            ))),
+        }
+    }
+
+    /// The mean of a stated and a measured ratio, weighted by their reciprocal variances; an error if they contradict
+    /// each other.
+    fn combined(&self, stated: Ratio, measured: Ratio) -> Result<Ratio> {
+        let off = (measured.log - stated.log).abs();
+        if off > MAX_CONTRADICTION && off > SIGNIFICANT * measured.error {
+            return Err(Error::argument(format!(
+                "the files of photos[{}] and photos[{}] state that the exposures have the ratio {:.4}, but the pixels \
+                 show {:.4} (standard error {:.2} %): a program changed the brightness, the light changed, or the photos \
+                 are not linear after sRGB decoding. Set params.source to LUXFER_EXPOSURE_SOURCE_PIXELS or \
+                 LUXFER_EXPOSURE_SOURCE_METADATA, or set params.exposures",
+                self.short,
+                self.long,
+                stated.log.exp(),
+                measured.log.exp(),
+                100.0 * measured.error
+            )));
+        }
+        let weights = [stated, measured].map(|r| r.error.max(f64::MIN_POSITIVE.sqrt()).powi(-2));
+        let total = weights[0] + weights[1];
+        let log = (weights[0] * stated.log + weights[1] * measured.log) / total;
+        Ok(Ratio { log, error: total.powf(-0.5) })
+    }
+}
+
+/// Adds up the ratios of neighbours to the exposure of each photo relative to the reference. `order` lists the photos;
+/// `ratios[k]` is the ratio of the exposures `order[k + 1]` / `order[k]`.
+pub fn chain(order: &[usize], ratios: &[Ratio], reference: usize) -> Vec<Ratio> {
+    let mut out = vec![Ratio { log: 0.0, error: 0.0 }; order.len()];
+    let start = order.iter().position(|&photo| photo == reference).unwrap_or(0);
+    for k in start..ratios.len() {
+        let before = out[order[k]];
+        out[order[k + 1]] = Ratio { log: before.log + ratios[k].log, error: before.error.hypot(ratios[k].error) };
+    }
+    for k in (0..start).rev() {
+        let after = out[order[k + 1]];
+        out[order[k]] = Ratio { log: after.log - ratios[k].log, error: after.error.hypot(ratios[k].error) };
+    }
+    out
+}

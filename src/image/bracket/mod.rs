@@ -1,0 +1,152 @@
+//! Merges several exposures of one view, a bracket, into one linear image of high dynamic range.
+//!
+//! Photos of lit rooms clip at the lamps, whose colours and luminances are then lost. Shorter exposures show them. The
+//! steps: `exposures` orders the photos; `align` shifts them onto each other; `ratio` measures the ratios of their
+//! exposures, which `exposures` compares with the metadata; `motion` finds the pixels at which neighbouring exposures
+//! disagree, beyond the `noise` that it measures; `combine` averages the rest. The result has the frame and the scale
+//! of one photo, the reference: what this photo shows well has the same values in the result, and what it shows
+//! clipped gets the values above.
+//!
+//! Not modelled: tone curves other than that of sRGB (the photos must be linear after loading), rotations and parallax
+//! between the photos, and lens flare, which differs between exposures only if the light does.
+
+mod align;
+mod combine;
+mod exposures;
+mod frame;
+mod motion;
+mod noise;
+mod params;
+mod ratio;
+#[cfg(test)]
+mod tests;
+
+pub use params::{MAX_PHOTOS, Params, PhotoReport, Report, Source};
+
+use crate::error::{Error, Result};
+use crate::exec;
+use crate::image::Image;
+use crate::image::photo::PhotoMetadata;
+use crate::job::Job;
+use combine::{Exposed, Stack};
+use exposures::Pair;
+use frame::Frame;
+use noise::Noise;
+use ratio::Ratio;
+
+/// A pixel is well exposed if its light is at least the first value, about 40 of 255 codes, and its largest channel at
+/// most the second. [convention]
+const WELL_EXPOSED: [f32; 2] = [0.02, 0.8];
+
+/// Merges photos of one view. `metadata` are those of the photos.
+pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job: Job) -> Result<(Image, Report)> {
+    check(photos, params, job)?;
+    let [first, ..] = photos else { return Err(Error::argument("count is 0")) };
+    if photos.len() == 1 {
+        return Ok((first.try_clone()?, of_one(first, &metadata[0], params)));
+    }
+    let mut frames: Vec<Frame> = photos.iter().map(|image| Frame::new(image, params.saturation)).collect();
+    let reference = params.reference.map_or_else(|| best_exposed(&frames, job), Ok)?;
+    let order = exposures::order(&frames, metadata, params);
+    let max_shift = (params.max_shift * first.width.max(first.height) as f64).round() as usize;
+    let shifts = align::shifts(&frames, &order, max_shift, job.part(0.0, 0.3))?;
+    for (frame, shift) in frames.iter_mut().zip(&shifts) {
+        frame.shift = [0, 1].map(|axis| shift[axis] - shifts[reference][axis]);
+    }
+    let (ratios, disagreements) = compare(&frames, metadata, &order, params, job.part(0.3, 0.8))?;
+    let relative = exposures::chain(&order, &ratios, reference);
+    let exposed = |&k: &usize| Exposed { frame: frames[k], exposure: relative[k].log.exp() as f32 };
+    let stack = Stack {
+        photos: order.iter().map(exposed).collect(),
+        disagreements,
+        reference: order.iter().position(|&k| k == reference).unwrap_or(0),
+    };
+    let merged = combine::combine(&stack, job.part(0.8, 1.0))?;
+    let pixels = (first.width * first.height) as f64;
+    let photo = |k: usize| PhotoReport {
+        exposure: relative[k].log.exp(),
+        error: relative[k].error,
+        stated: exposures::stated_ratio(&metadata[reference], &metadata[k]).unwrap_or(0.0),
+        shift: frames[k].shift,
+    };
+    let photos = (0..photos.len()).map(photo).collect();
+    let (clipped, moved) = (merged.clipped as f64 / pixels, merged.moved as f64 / pixels);
+    Ok((merged.image, Report { reference, photos, clipped, moved }))
+}
+
+/// Checks settings and photos.
+fn check(photos: &[&Image], params: &Params, job: Job) -> Result<()> {
+    params.check(photos.len())?;
+    for (i, photo) in photos.iter().enumerate() {
+        job.check()?;
+        let name = format!("photos[{i}]");
+        if !matches!(photo.channels, 1 | 3 | 4) {
+            return Err(Error::argument(format!("{name} has {} channels; it must have 1, 3 or 4", photo.channels)));
+        }
+        if photo.channels != photos[0].channels {
+            return Err(Error::argument(format!(
+                "{name} has {} channels and photos[0] has {}; all photos must have the same number",
+                photo.channels, photos[0].channels
+            )));
+        }
+        photo.check_same_size(&name, photos[0], "photos[0]")?;
+        let broken = photo.count_non_finite();
+        if broken > 0 {
+            return Err(Error::argument(format!(
+                "{name} has {broken} samples that are NaN or infinite; all must be finite"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The report about a single photo.
+fn of_one(image: &Image, metadata: &PhotoMetadata, params: &Params) -> Report {
+    let frame = Frame::new(image, params.saturation);
+    let pixels = image.data.chunks_exact(image.channels);
+    let clipped = pixels.filter(|pixel| frame::peak(pixel) >= frame.clip).count();
+    let stated = exposures::stated_ratio(metadata, metadata).unwrap_or(0.0);
+    let photo = PhotoReport { exposure: 1.0, stated, ..PhotoReport::default() };
+    Report { photos: vec![photo], clipped: clipped as f64 / (image.width * image.height) as f64, ..Report::default() }
+}
+
+/// The index of the photo with the most pixels that are well exposed.
+fn best_exposed(frames: &[Frame], job: Job) -> Result<usize> {
+    let counts = exec::map(frames.len(), job.part(0.0, 0.0), |k| {
+        let pixels = frames[k].image.data.chunks_exact(frames[k].image.channels);
+        let is_well_exposed = |pixel: &[f32]| {
+            frame::light(pixel) >= WELL_EXPOSED[0]
+                && (frames[k].clip.is_infinite() || frame::peak(pixel) <= WELL_EXPOSED[1])
+        };
+        pixels.filter(|pixel| is_well_exposed(pixel)).count()
+    })?;
+    Ok((0..counts.len()).rev().max_by_key(|&k| counts[k]).unwrap_or(0))
+}
+
+/// Compares the neighbours in the order of exposure: returns the ratios of their exposures, and where they disagree.
+fn compare(
+    frames: &[Frame],
+    metadata: &[PhotoMetadata],
+    order: &[usize],
+    params: &Params,
+    job: Job,
+) -> Result<(Vec<Ratio>, Vec<Vec<u8>>)> {
+    let size = [frames[0].image.width, frames[0].image.height];
+    let (mut ratios, mut disagreements) = (Vec::new(), Vec::new());
+    let step = 1.0 / (order.len() - 1) as f64;
+    for (k, neighbours) in order.windows(2).enumerate() {
+        let job = job.part(k as f64 * step, ((k + 1) as f64 * step).min(1.0));
+        let [s, l] = [neighbours[0], neighbours[1]];
+        let (short, long) = (&frames[s], &frames[l]);
+        let pair = Pair { short: s, long: l, stated: exposures::stated_ratio(&metadata[s], &metadata[l]) };
+        let samples = ratio::samples(short, long, size, job.part(0.0, 0.2))?;
+        let ratio = pair.ratio(ratio::measure(&samples, long.clip), params)?;
+        if !params.keep_moving {
+            let factor = ratio.log.exp() as f32;
+            let noise = Noise::measure(&samples, factor);
+            disagreements.push(motion::disagreement([short, long], factor, &noise, size, job.part(0.2, 1.0))?);
+        }
+        ratios.push(ratio);
+    }
+    Ok((ratios, disagreements))
+}

@@ -1,0 +1,98 @@
+//! The settings of a merge, and its report.
+
+use crate::error::{Error, Result, check_range};
+
+/// Largest number of photos in a bracket.
+pub const MAX_PHOTOS: usize = 16;
+
+/// Where the exposures of the photos come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// From metadata and pixels together; an error if they contradict each other.
+    Both,
+    Metadata,
+    Pixels,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Params {
+    pub source: Source,
+    /// Exposure of each photo in any unit, in `(0, 1e9]`; empty if the library is to find the exposures.
+    pub exposures: Vec<f64>,
+    /// Index of the photo that gives the result its scale and its frame; `None`: the photo with the most pixels that
+    /// are well exposed.
+    pub reference: Option<usize>,
+    /// Whether to average pixels where the exposures disagree, too.
+    pub keep_moving: bool,
+    /// Largest shift between neighbouring exposures, as a part of the longer side, in `[0, 0.25]`; 0: no alignment.
+    pub max_shift: f64,
+    /// Value in `[0.1, 1]` from which on a channel counts as clipped.
+    pub saturation: f64,
+}
+
+impl Default for Params {
+    fn default() -> Self {
+        Self {
+            source: Source::Both,
+            exposures: Vec::new(),
+            reference: None,
+            keep_moving: false,
+            max_shift: 0.03,
+            saturation: 0.95,
+        }
+    }
+}
+
+impl Params {
+    /// Checks the settings for a bracket of `count` photos.
+    pub(super) fn check(&self, count: usize) -> Result<()> {
+        if !(1..=MAX_PHOTOS).contains(&count) {
+            return Err(Error::argument(format!("count is {count}; a bracket has 1 to {MAX_PHOTOS} photos")));
+        }
+        if !self.exposures.is_empty() && self.exposures.len() != count {
+            let given = self.exposures.len();
+            return Err(Error::argument(format!(
+                "exposures states {given} values for {count} photos; it must state one for each photo, or none"
+            )));
+        }
+        for (i, &exposure) in self.exposures.iter().enumerate() {
+            if !(exposure > 0.0 && exposure <= 1e9) {
+                return Err(Error::argument(format!("exposures[{i}] is {exposure}; it must lie in (0, 1e9]")));
+            }
+        }
+        if let Some(reference) = self.reference.filter(|&r| r >= count) {
+            return Err(Error::argument(format!(
+                "reference is {reference}; it must be -1 or the index of one of the {count} photos"
+            )));
+        }
+        check_range("max_shift", self.max_shift, 0.0, 0.25)?;
+        check_range("saturation", self.saturation, 0.1, 1.0)?;
+        Ok(())
+    }
+}
+
+/// What a merge found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Report {
+    /// Index of the reference.
+    pub reference: usize,
+    /// Of each photo, in the order of the input.
+    pub photos: Vec<PhotoReport>,
+    /// Part of the pixels that are clipped in every exposure that shows them, in `[0, 1]`.
+    pub clipped: f64,
+    /// Part of the pixels at which the exposures disagree, in `[0, 1]`.
+    pub moved: f64,
+}
+
+/// What a merge found about a photo.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhotoReport {
+    /// Exposure relative to the reference.
+    pub exposure: f64,
+    /// Standard error of the natural logarithm of the exposure: about its relative standard error.
+    pub error: f64,
+    /// Exposure relative to the reference according to the metadata; 0: unknown.
+    pub stated: f64,
+    /// Column and row of this photo that show the same as column 0 and row 0 of the reference.
+    pub shift: [isize; 2],
+}
