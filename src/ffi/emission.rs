@@ -327,7 +327,7 @@ impl Exemplar {
             unwarped: unwarped.image(),
             light: light.image(),
             valid: valid.image(),
-            photo: self.photo.as_ref().map(|(photo, to_photo)| (photo.image(), *to_photo)),
+            photo: self.photo.as_ref().map(|(photo, to_photo)| (photo.image(), (*to_photo).into())),
         }
     }
 }

@@ -27,8 +27,8 @@
 //!   direction does not show this.
 //! - Short segments share a small bias, whose cause is unknown.
 //!
-//! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixel aspect ratios
-//! other than 1; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
+//! Not modelled: lens distortion other than radial distortion with one coefficient; pixel aspect ratios other than 1;
+//! rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
 //! [`View::squareness`] reports their deviation from right angles.
 
 mod biweight;
@@ -63,15 +63,15 @@ mod warnings;
 pub use distortion::Distortion;
 pub use focal::FocalPrior;
 pub use params::{LineDetector, Metric, Params, Search, UnwarpParams};
-pub use resample::warp;
+pub use resample::{undistort, warp, warp_photo};
 pub use squareness::Squareness;
 pub use unwarp::unwarp;
 pub use vanishing::VanishingPoint;
 
 use crate::error::{Error, Result};
 use crate::geometry::perspective::VERTICAL;
-use crate::geometry::{Homography, Perspective, Segment};
-use crate::image::{Image, pyramid};
+use crate::geometry::{Perspective, PhotoMap, Radial, Segment};
+use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -82,9 +82,10 @@ const DETECTION_SIDE: usize = 1600;
 /// The camera geometry that the lines of a photo imply.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// The segments, each with the index of the room axis along which it runs; `None` if it runs along no axis.
+    /// The segments in pixels of the photo, each with the index of the room axis along which it runs; `None` if it runs along no axis.
     pub segments: Vec<(Segment, Option<usize>)>,
-    /// The vanishing point of each room axis, that is, of each column of `perspective.axes`.
+    /// The vanishing point of each room axis, that is, of each column of `perspective.axes`, in pixels of the photo that
+    /// an ideal lens would take.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
     /// Standard deviation of the logarithm of the focal length; 0 if the caller gave the focal length.
@@ -95,6 +96,8 @@ pub struct View {
     /// Lens distortion, from the curvature of edges that should be straight; `None` if the photo has too few lines, or
     /// if only segments were given.
     pub distortion: Option<Distortion>,
+    /// The distortion that was undone, as [`Distortion::corner`]; 0 if none was.
+    pub undone: f64,
     /// The prior of the focal length: from the photo's metadata, or else the typical value for photos of rooms.
     pub expected_focal: FocalPrior,
 }
@@ -125,8 +128,23 @@ impl View {
 pub fn find_view(photo: &Image, params: &Params, job: Job) -> Result<View> {
     params.check()?;
     let Lines { segments, distortion } = find_lines(photo, params, job.part(0.0, 0.7))?;
-    let view = view_from_segments(&segments, photo.width, photo.height, params, job.part(0.7, 1.0))?;
+    let size = [photo.width, photo.height];
+    let view = view_through(&lens(size, params, distortion)?, &segments, size, params, job.part(0.7, 1.0))?;
     Ok(View { distortion, ..view })
+}
+
+/// Returns the distortion to undo: the given one, or else the measured one if it is significant. A measured distortion
+/// that cannot be undone, because the map would fold over inside the photo, is left alone.
+fn lens(size: [usize; 2], params: &Params, measured: Option<Distortion>) -> Result<Radial> {
+    let size = DVec2::new(size[0] as f64, size[1] as f64);
+    let centre = params.principal.unwrap_or(0.5 * size);
+    match params.distortion {
+        Some(corner) => Radial::new(corner, centre, size),
+        None => {
+            let significant = measured.filter(Distortion::is_significant);
+            Ok(significant.and_then(|d| Radial::new(d.corner, centre, size).ok()).unwrap_or(Radial::NONE))
+        }
+    }
 }
 
 /// Finds the straight edges of a photo, in pixels of the photo.
@@ -176,7 +194,7 @@ fn detect_lines(photo: &Image, centre: DVec2, params: &Params, job: Job) -> Resu
 }
 
 /// Finds the vanishing points and the camera from segments that the caller detected, as [`find_view`] does from a
-/// photo. The `distortion` of the result is `None`.
+/// photo. The `distortion` of the result is `None`; only a distortion given in `params` is undone.
 pub fn view_from_segments(
     segments: &[Segment],
     width: usize,
@@ -187,16 +205,29 @@ pub fn view_from_segments(
     if width == 0 || height == 0 {
         return Err(Error::argument(format!("image size is {width} x {height}; both must be at least 1")));
     }
-    let found = vanishing::from_segments(segments, width, height, 3, params, job)?;
+    view_through(&lens([width, height], params, None)?, segments, [width, height], params, job)
+}
+
+/// Finds the vanishing points and the camera from segments of a photo that was taken through `lens`.
+fn view_through(
+    lens: &Radial,
+    segments: &[Segment],
+    [width, height]: [usize; 2],
+    params: &Params,
+    job: Job,
+) -> Result<View> {
+    let straight = try_collect(segments.iter().map(|s| Segment { a: lens.ideal(s.a), b: lens.ideal(s.b) }))?;
+    let found = vanishing::from_segments(&straight, width, height, 3, params, job)?;
     let oriented = camera::orient(&found, width, height, params);
     let axis = |member: &Option<usize>| member.and_then(|k| oriented.axis_of[k]);
     Ok(View {
         segments: segments.iter().copied().zip(found.members.iter().map(axis)).collect(),
         vanishing_points: oriented.vanishing_points,
-        perspective: oriented.perspective,
+        perspective: Perspective { bend: lens.bend, ..oriented.perspective },
         focal_spread: oriented.focal_spread,
         squareness: oriented.squareness,
         distortion: None,
+        undone: lens.bend * 0.25 * DVec2::new(width as f64, height as f64).length_squared(),
         expected_focal: oriented.expected,
     })
 }
@@ -210,7 +241,7 @@ pub struct Unwarped {
     /// One channel: 1 where the mask marks the plane and the photo is finite, else 0.
     pub valid: Image,
     /// Maps unwarped pixels to photo pixels.
-    pub to_photo: Homography,
+    pub to_photo: PhotoMap,
     /// Size of an unwarped pixel divided by the distance between camera and plane: multiply by that distance to get
     /// metres.
     pub pixel_size: f64,

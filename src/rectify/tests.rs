@@ -18,6 +18,7 @@ fn camera(yaw: f64, pitch: f64, roll: f64, focal: f64) -> Perspective {
         focal,
         focal_source: FocalSource::Given,
         principal: DVec2::new(SIZE.0 as f64, SIZE.1 as f64) / 2.0,
+        bend: 0.0,
         axes: DMat3::from_quat(turn),
     }
 }

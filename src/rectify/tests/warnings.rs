@@ -16,6 +16,7 @@ fn camera(yaw: f64, pitch: f64) -> Perspective {
         focal: 700.0,
         focal_source: FocalSource::Given,
         principal: DVec2::new(WIDTH as f64, HEIGHT as f64) / 2.0,
+        bend: 0.0,
         axes: DMat3::from_quat(DQuat::from_rotation_x(pitch) * DQuat::from_rotation_y(yaw)),
     }
 }
