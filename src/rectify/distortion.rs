@@ -13,6 +13,7 @@
 
 use super::edge_lines::{self, Edge};
 use super::gradient::{Gradients, SIGMA};
+use super::warnings::{MAX_DISTORTION, SIGNIFICANT};
 use crate::geometry::Segment;
 use crate::geometry::robust::weighted_median;
 use glam::DVec2;
@@ -29,17 +30,10 @@ pub struct Distortion {
     pub segments: usize,
 }
 
-/// A distortion is significant if it displaces the corners of the photo by more than this share of their distance from
-/// the centre. Smaller ones displace the edges of lamps by less than the segmentation does. [judged on 38 photos]
-pub const MIN_DISTORTION: f64 = 0.02;
-/// A measured value counts as different from 0 if its magnitude exceeds this number of its standard deviations.
-/// [convention]
-pub const SIGNIFICANT: f64 = 3.0;
-
 impl Distortion {
     /// Whether the distortion is large enough to matter, and certainly not 0.
     pub fn is_significant(&self) -> bool {
-        self.corner.abs() > MIN_DISTORTION.max(SIGNIFICANT * self.error)
+        self.corner.abs() > MAX_DISTORTION.max(SIGNIFICANT * self.error)
     }
 }
 

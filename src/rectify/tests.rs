@@ -10,6 +10,8 @@ use crate::job::Monitor;
 use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
+mod lens;
+
 const SIZE: (usize, usize) = (800, 600);
 
 fn camera(yaw: f64, pitch: f64, roll: f64, focal: f64) -> Perspective {
