@@ -2,20 +2,21 @@
 //! re-projected panoramas, and the error against time with fewer lines or pixels. The latter is measured also on
 //! generated rooms, whose directions are known exactly.
 //!
-//! Arguments select sections: accuracy on given segments (`segments`) and on panoramas (`panoramas`); time, and error
-//! against time (`curves`).
+//! Arguments select sections: accuracy on given segments (`segments`) and on panoramas (`panoramas`); undone distortions
+//! of lenses (`lenses`); time, and error against time (`curves`).
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
 mod truth;
 
-use glam::{DMat3, DVec3, Quat};
+use glam::{DMat3, DVec2, DVec3, Quat};
 use harness::plot::Plot;
 use harness::{Clock, Table, absent, figure, interleaved, quantile, scenes, time};
 use luxfer::demo::photo::{self, photograph};
 use luxfer::exec::Pool;
-use luxfer::geometry::Segment;
-use luxfer::image::pyramid;
+use luxfer::geometry::{Radial, Segment};
+use luxfer::image::io::{self, Encoding};
+use luxfer::image::{Image, pyramid};
 use luxfer::job::Monitor;
 use luxfer::rectify::{self, Metric, Params, Search, vanishing};
 use luxfer::scene::Camera;
@@ -45,6 +46,9 @@ fn main() {
     let photos = labelled_photos();
     if wants("panoramas") {
         pool.run(|| panoramas(&photos));
+    }
+    if wants("lenses") {
+        pool.run(|| lenses(&sets[1], &photos));
     }
     if wants("curves") {
         pool.run(|| curves(&sets, &photos));
@@ -141,6 +145,105 @@ fn print_bounds(sets: &[Option<GivenSet>; 2]) {
         }
     }
     bound.print("Lower bound of the error: directions fitted to the lines labelled with them, the camera known");
+}
+
+/// Focal length of York Urban's camera in pixels, by its calibration.
+const YORK_FOCAL: f64 = 674.858;
+/// Radial distortions that are undone in York Urban's segments.
+const UNDONE: [f64; 6] = [0.0, -0.01, -0.02, -0.03, -0.04, -0.05];
+/// Numbers of standard deviations from which a measured distortion is undone.
+const LIMITS: [f64; 5] = [1.0, 1.5, 2.0, 2.5, 3.0];
+
+/// Measures what undoing the distortion of the lens changes: on photos of York Urban, whose camera has barrel
+/// distortion, and on views cut out of panoramas, which have none.
+fn lenses(york: &Option<GivenSet>, panoramas: &[Labelled]) {
+    let Some(set) = york else { return absent("vp.york.focal_error", "York Urban is not there") };
+    undone_segments(set);
+    let Some(folder) = truth::data("photos") else { return };
+    let mut cases: Vec<LensCase> = panoramas.iter().map(LensCase::of_panorama).collect();
+    for number in ["008", "009", "034", "037", "047", "049", "059", "076"] {
+        let name = format!("yud_{number}");
+        let photo = io::load(&folder.join(format!("{name}.jpg")), Encoding::Srgb).unwrap().to_rgb().unwrap();
+        cases.push(LensCase::new(&name, &photo, YORK_FOCAL));
+    }
+    let percent = |value: f64| format!("{:.1}", 100.0 * value);
+    let mut table = Table::new(["photo", "distortion, %", "errors", "focal error, %", "undone"]);
+    for case in &cases {
+        let [off, on] = case.focal_errors.map(percent);
+        let measured = percent(case.corner);
+        table.row([case.name.clone(), measured, format!("{:.1}", case.deviations()), off, on]);
+    }
+    table.print("Measured distortion, and the focal error before and after it is undone");
+    let mut table = Table::new(["undone from", "York, mean focal error, %", "panoramas", "panoramas changed"]);
+    for limit in LIMITS.into_iter().chain([f64::INFINITY]) {
+        let mean = |is_york: bool| {
+            let of = cases.iter().filter(|case| case.name.starts_with("yud_") == is_york);
+            let errors: Vec<f64> = of.map(|case| case.focal_errors[usize::from(case.is_undone(limit))].abs()).collect();
+            errors.iter().sum::<f64>() / errors.len() as f64
+        };
+        let changed = cases.iter().filter(|case| !case.name.starts_with("yud_") && case.is_undone(limit)).count();
+        let limits = format!("{limit:.1} errors and 2 %");
+        table.row([limits, percent(mean(true)), percent(mean(false)), changed.to_string()]);
+    }
+    table.print("Limits from which a distortion is undone");
+}
+
+/// Prints the accuracy on York Urban's given segments after distortions are undone in them. The labels of directions
+/// are intersections of lines in the distorted photos; the calibrated focal length does not depend on them.
+fn undone_segments(set: &GivenSet) {
+    let mut table = Table::new(["undone, %", "AUC@10", "AUC@5", "median deg", "median focal error, %"]);
+    let size = DVec2::new(set.width as f64, set.height as f64);
+    for corner in UNDONE {
+        let lens = Radial::new(corner, 0.5 * size, size).unwrap();
+        let straight = |s: &Segment| Segment { a: lens.ideal(s.a), b: lens.ideal(s.b) };
+        let images = set.images.iter().map(|(s, truth)| (s.iter().map(straight).collect(), truth.clone()));
+        let undone = GivenSet { images: images.collect(), ..*set }.first_three();
+        let angles = undone.angles(&Params::default());
+        let focal = |segments: &Vec<Segment>| {
+            let monitor = Monitor::default();
+            let view = rectify::view_from_segments(segments, set.width, set.height, &Params::default(), monitor.job());
+            view.map_or(f64::NAN, |view| (view.perspective.focal / YORK_FOCAL).ln().abs())
+        };
+        let focals: Vec<f64> = undone.images.iter().map(|(segments, _)| focal(segments)).collect();
+        let [ten, five] = [10.0, 5.0].map(|limit| format!("{:.1}", 100.0 * area(&angles, limit)));
+        let [median, focal] = [quantile(&angles, 0.5), 100.0 * quantile(&focals, 0.5)].map(|v| format!("{v:.2}"));
+        table.row([format!("{:.0}", 100.0 * corner), ten, five, median, focal]);
+    }
+    table.print("York Urban's given segments, first three directions, after a distortion is undone");
+}
+
+/// A photo whose focal length is known, the distortion measured in it, and the errors of the logarithm of the focal
+/// length without and with this distortion undone.
+struct LensCase {
+    name: String,
+    corner: f64,
+    error: f64,
+    focal_errors: [f64; 2],
+}
+
+impl LensCase {
+    fn of_panorama(labelled: &Labelled) -> Self {
+        Self::new(&labelled.name, &labelled.photo, labelled.intrinsics.x_axis.x)
+    }
+
+    fn new(name: &str, photo: &Image, focal: f64) -> Self {
+        let view = |distortion: f64| {
+            let params = Params { distortion: Some(distortion), ..Params::default() };
+            rectify::find_view(photo, &params, Monitor::default().job()).unwrap()
+        };
+        let off = view(0.0);
+        let [corner, error] = off.distortion.map_or([0.0, f64::INFINITY], |found| [found.corner, found.error]);
+        let focal_errors = [off, view(corner)].map(|view| (view.perspective.focal / focal).ln());
+        Self { name: name.into(), corner, error, focal_errors }
+    }
+
+    fn deviations(&self) -> f64 {
+        self.corner.abs() / self.error
+    }
+
+    fn is_undone(&self, limit: f64) -> bool {
+        self.corner.abs() > 0.02 && self.deviations() > limit
+    }
 }
 
 /// Times the search for vanishing points on images with `SEGMENTS` segments.

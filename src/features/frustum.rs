@@ -46,8 +46,8 @@ impl Frustum {
         )))
     }
 
-    /// Normalised device coordinates of a pixel's centre: -1 at the left and top border, 1 at the right and bottom. For a
-    /// lens with distortion, those of the point at which an ideal lens shows what the pixel shows.
+    /// Normalised device coordinates of a pixel's centre: -1 at the left and top border, 1 at the right and bottom. For
+    /// a lens with distortion, those of the point at which an ideal lens shows what the pixel shows.
     pub fn ndc(&self, x: usize, y: usize, width: usize, height: usize) -> Vec2 {
         if !self.lens.is_none() {
             let ideal = self.lens.ideal(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
@@ -109,7 +109,8 @@ mod tests {
 
     #[test]
     fn projecting_and_unprojecting_is_the_identity() {
-        let frustum = Frustum { left: -0.7, right: 0.6, top: -0.4, bottom: 0.9, near: 0.5, far: 20.0, lens: Radial::NONE };
+        let frustum =
+            Frustum { left: -0.7, right: 0.6, top: -0.4, bottom: 0.9, near: 0.5, far: 20.0, lens: Radial::NONE };
         for point in [Vec3::new(1.0, 2.0, 3.0), Vec3::new(-4.0, 0.1, 0.5), Vec3::new(30.0, -20.0, 80.0)] {
             let back = frustum.unproject(frustum.project(point));
             assert!((back - point).length() < 1e-4 * point.length(), "{point} {back}");
@@ -131,6 +132,11 @@ mod tests {
         let ray = frustum.ray(frustum.ndc(17, 400, 640, 480)).as_dvec3();
         let expected: DVec3 = camera.ray(DVec2::new(17.5, 400.5));
         assert!((ray - expected).length() < 1e-6);
+        // With a lens, too: the pixel's coordinates are those of an ideal lens.
+        let bent = Perspective { bend: -0.05 / (320.0f64 * 320.0 + 240.0 * 240.0), ..camera };
+        let frustum = Frustum::of_camera(&bent, 640, 480, 1.0, 10.0).unwrap();
+        let ray = frustum.ray(frustum.ndc(17, 400, 640, 480)).as_dvec3();
+        assert!((ray - bent.ray(DVec2::new(17.5, 400.5))).length() < 1e-6 && (ray - expected).length() > 1e-3);
         assert!(Frustum::of_camera(&Perspective { focal: 0.0, ..camera }, 640, 480, 1.0, 10.0).is_err());
         assert!(Frustum::of_camera(&Perspective { focal: f64::NAN, ..camera }, 640, 480, 1.0, 10.0).is_err());
     }

@@ -43,7 +43,7 @@ impl Radial {
         let at_farthest = bend * farthest.length_squared();
         if !(MIN_CORNER..=MAX_CORNER).contains(&at_farthest) {
             return Err(Error::argument(format!(
-                "distortion is {corner}; about the principal point {centre} it must lie in [{}, {}]",
+                "distortion is {corner}; about the principal point {centre} it must lie in [{:.4}, {:.4}]",
                 MIN_CORNER * corner / at_farthest,
                 MAX_CORNER * corner / at_farthest
             )));
@@ -122,7 +122,11 @@ mod tests {
             for i in 0..=20 {
                 for k in 0..=20 {
                     let p = SIZE * DVec2::new(f64::from(i), f64::from(k)) / 20.0;
-                    assert!(lens.shown(lens.ideal(p)).distance(p) < 1e-9, "{corner}: {p} {}", lens.shown(lens.ideal(p)));
+                    assert!(
+                        lens.shown(lens.ideal(p)).distance(p) < 1e-9,
+                        "{corner}: {p} {}",
+                        lens.shown(lens.ideal(p))
+                    );
                 }
             }
         }
@@ -179,7 +183,7 @@ mod tests {
         // About a corner of the photo the farthest corner is twice as far away, so the range is a quarter.
         assert!(Radial::new(0.049, DVec2::ZERO, SIZE).is_ok() && Radial::new(-0.24, DVec2::ZERO, SIZE).is_ok());
         let e = Radial::new(0.1, DVec2::ZERO, SIZE).unwrap_err();
-        assert!(e.message.contains("distortion is 0.1") && e.message.contains("[-0.25, 0.05]"), "{}", e.message);
+        assert!(e.message.contains("distortion is 0.1") && e.message.contains("[-0.2500, 0.0500]"), "{}", e.message);
         // Photos of one pixel.
         assert!(Radial::new(-0.05, DVec2::splat(0.5), DVec2::ONE).is_ok());
     }

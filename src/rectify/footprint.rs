@@ -143,10 +143,7 @@ fn bent(lens: &Radial, at: (f64, f64), [a, b, c, d]: [f32; 4]) -> ((f32, f32), (
     let inverse = lens.derivative(DVec2::new(at.0, at.1)).inverse().as_mat2();
     let (x, y) = (inverse.x_axis, inverse.y_axis);
     let limit = |v: f32| v.max(-MAX_DERIVATIVE).min(MAX_DERIVATIVE);
-    (
-        (limit(x.x * a + y.x * c), limit(x.x * b + y.x * d)),
-        (limit(x.y * a + y.y * c), limit(x.y * b + y.y * d)),
-    )
+    ((limit(x.x * a + y.x * c), limit(x.x * b + y.x * d)), (limit(x.y * a + y.y * c), limit(x.y * b + y.y * d)))
 }
 
 /// Returns the shortest side, the greatest width and the greatest height of the visible footprints; `None` if no

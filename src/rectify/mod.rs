@@ -82,10 +82,11 @@ const DETECTION_SIDE: usize = 1600;
 /// The camera geometry that the lines of a photo imply.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// The segments in pixels of the photo, each with the index of the room axis along which it runs; `None` if it runs along no axis.
+    /// The segments in pixels of the photo, each with the index of the room axis along which it runs; `None` if it runs
+    /// along no axis.
     pub segments: Vec<(Segment, Option<usize>)>,
-    /// The vanishing point of each room axis, that is, of each column of `perspective.axes`, in pixels of the photo that
-    /// an ideal lens would take.
+    /// The vanishing point of each room axis, that is, of each column of `perspective.axes`, in pixels of the photo
+    /// that an ideal lens would take.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
     /// Standard deviation of the logarithm of the focal length; 0 if the caller gave the focal length.

@@ -43,8 +43,8 @@ impl Plane {
     }
 
     /// Side, in plane units, of a square with the same area as the patch of the plane that a pixel covers. This is
-    /// `√det J`, where J is the Jacobian from pixels to plane coordinates. For an ideal lens, det J = 1 / (f² (n · ray)³).
-    /// `ray` has z = 1, n is the normal of the plane, and f the focal length in pixels.
+    /// `√det J`, where J is the Jacobian from pixels to plane coordinates. For an ideal lens, det J is
+    /// 1 / (f² (n · ray)³). `ray` has z = 1, n is the normal of the plane, and f the focal length in pixels.
     pub fn pixel_side(&self, pixel: DVec2) -> f64 {
         let side = self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal;
         let lens = self.perspective.lens();

@@ -1,5 +1,5 @@
-//! Resampling through a homography, and through the distortion of a lens: bicubic interpolation (Catmull-Rom) where the source is magnified, the mean over
-//! the pixel's footprint where it is minified.
+//! Resampling through a homography, and through the distortion of a lens: bicubic interpolation (Catmull-Rom) where the
+//! source is magnified, the mean over the pixel's footprint where it is minified.
 //!
 //! The parallelogram that a pixel covers is replaced by the sheared rectangle with the same second moments (see
 //! [`Footprints`]). Rectangles large in both directions are sampled from a coarser level of a pyramid. Rectangles that

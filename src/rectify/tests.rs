@@ -5,7 +5,7 @@ use super::vanishing::from_segments;
 use super::*;
 use crate::error::ErrorKind;
 use crate::exec::Pool;
-use crate::geometry::FocalSource;
+use crate::geometry::{FocalSource, Homography};
 use crate::job::Monitor;
 use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};

@@ -13,12 +13,12 @@ use std::f64::consts::FRAC_1_SQRT_2;
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
 /// A room axis whose standard deviation is above this, in radians, raises a warning. [judged on 38 photos]
 pub const MAX_DIRECTION_ERROR: f64 = 0.035;
-/// The distortion of a lens is undone, or raises a warning, if it displaces the photo's corners by more than this share
+/// A lens whose distortion is not undone raises a warning if it displaces the photo's corners by more than this share
 /// of their distance from the centre. [judged on 38 photos]
-pub const MAX_DISTORTION: f64 = 0.02;
+const MAX_DISTORTION: f64 = 0.02;
 /// A measured value counts as different from 0 if its magnitude exceeds this number of its standard deviations.
 /// [convention]
-pub const SIGNIFICANT: f64 = 3.0;
+const SIGNIFICANT: f64 = 3.0;
 /// An angle between room axes raises a warning if it deviates from a right angle by more than this, in radians.
 /// [judged on 38 photos]
 const MAX_SKEW: f64 = 0.035;
@@ -71,7 +71,7 @@ impl View {
     }
 
     fn distorted(&self) -> Option<Warning> {
-        let found = self.distortion.filter(|d| d.is_significant() && self.undone == 0.0)?;
+        let found = self.distortion.filter(|d| d.corner.abs() > SIGNIFICANT * d.error && self.undone == 0.0)?;
         let kind = if found.corner < 0.0 { "barrel" } else { "pincushion" };
         Warning::above(
             Code::LensDistortion,

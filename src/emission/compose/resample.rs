@@ -143,7 +143,8 @@ mod tests {
         assert_eq!(mean(&hole, &wide, DVec2::new(4.5, 4.2), 1.0), None);
         // At the horizon the square covers unboundedly many photo pixels, but the limit on the sample points keeps the
         // time short.
-        let horizon = Homography(DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [1.0, 1.0, -1.0]])).into();
+        let horizon =
+            Homography(DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [1.0, 1.0, -1.0]])).into();
         for y in [0.9, 1.0, 1.0 + 1e-9, 1.5] {
             mean(&photo, &horizon, DVec2::new(0.5, y), 1.0);
         }

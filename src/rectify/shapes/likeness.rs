@@ -1,8 +1,8 @@
 //! Measures how similar the lamp shapes on a plane are to each other in fronto-parallel view, for a given tilt of the
 //! plane.
 
-use crate::geometry::{Perspective, Radial};
 use crate::geometry::robust::weighted_median;
+use crate::geometry::{Perspective, Radial};
 use crate::image::Image;
 use crate::image::regions::Regions;
 use crate::{error::Result, image::try_vec};

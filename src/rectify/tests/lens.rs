@@ -8,7 +8,7 @@ const BENDS: [f64; 4] = [-0.3, -0.06, 0.02, 0.1];
 
 /// A camera whose lens moves the corners of the photo by the share `corner`.
 fn bent(corner: f64) -> Perspective {
-    let ideal = camera(0.5, 0.35, 0.05, 600.0);
+    let ideal = camera(0.5, -0.35, 0.05, 600.0);
     let size = DVec2::new(SIZE.0 as f64, SIZE.1 as f64);
     Perspective { bend: Radial::new(corner, ideal.principal, size).unwrap().bend, ..ideal }
 }
@@ -120,7 +120,10 @@ fn a_grid_on_the_ceiling_comes_back_straight() {
         let (w, h) = (flat.image.width as f64, flat.image.height as f64);
         let [origin, right, down] = [at(0.3 * w, 0.5 * h), at(0.7 * w, 0.5 * h), at(0.3 * w, 0.8 * h)];
         let (right, down) = ((right - origin) / (0.4 * w), (down - origin) / (0.3 * h));
-        assert!((right.length() / flat.pixel_size - 1.0).abs() < 1e-3 && right.dot(down).abs() < 1e-3 * down.length_squared());
+        assert!(
+            (right.length() / flat.pixel_size - 1.0).abs() < 1e-3
+                && right.dot(down).abs() < 1e-3 * down.length_squared()
+        );
         let expected = origin + right * (0.3 * w) + down * (0.1 * h);
         assert!(at(0.6 * w, 0.6 * h).distance(expected) < 1e-3 * flat.pixel_size, "{corner}");
         // The corners are pixels of the photo.
@@ -142,7 +145,9 @@ fn a_significant_distortion_is_undone_and_another_changes_no_bit() {
     let (by_default, off) = (view(&photo, &Params::default()), view(&photo, &with_distortion(0.0)));
     let measured = by_default.distortion.unwrap();
     assert!((by_default.undone + 0.08).abs() < 0.01, "{measured:?}");
-    assert!((by_default.undone - measured.corner).abs() < 1e-12 && off.undone == 0.0 && off.distortion == Some(measured));
+    assert!(
+        (by_default.undone - measured.corner).abs() < 1e-12 && off.undone == 0.0 && off.distortion == Some(measured)
+    );
     assert!(!by_default.warnings().iter().any(|w| w.code == crate::warning::Code::LensDistortion));
     assert!(off.warnings().iter().any(|w| w.code == crate::warning::Code::LensDistortion));
     let flat = |view: &View| {

@@ -89,7 +89,7 @@ fn unwarped(to_photo: DMat3) -> Unwarped {
     Unwarped {
         image: Image::new(100, 80, 3).unwrap(),
         valid: Image::from_fn(100, 80, |_, _| [1.0]).unwrap(),
-        to_photo: Homography(to_photo).rescaled(),
+        to_photo: Homography(to_photo).rescaled().into(),
         pixel_size: 0.01,
         corners: [DVec2::ZERO; 4],
         aspect_confidence: 1.0,
