@@ -182,7 +182,7 @@ fn lenses(york: &Option<GivenSet>, panoramas: &[Labelled]) {
             errors.iter().sum::<f64>() / errors.len() as f64
         };
         let changed = cases.iter().filter(|case| !case.name.starts_with("yud_") && case.is_undone(limit)).count();
-        let limits = format!("{limit:.1} errors and 2 %");
+        let limits = format!("{limit:.1} errors, barrel of 2 to 10 %");
         table.row([limits, percent(mean(true)), percent(mean(false)), changed.to_string()]);
     }
     table.print("Limits from which a distortion is undone");
@@ -233,7 +233,7 @@ impl LensCase {
         };
         let off = view(0.0);
         let [corner, error] = off.distortion.map_or([0.0, f64::INFINITY], |found| [found.corner, found.error]);
-        let focal_errors = [off, view(corner)].map(|view| (view.perspective.focal / focal).ln());
+        let focal_errors = [off, view(corner.clamp(-1.0, 0.2))].map(|view| (view.perspective.focal / focal).ln());
         Self { name: name.into(), corner, error, focal_errors }
     }
 
@@ -242,7 +242,7 @@ impl LensCase {
     }
 
     fn is_undone(&self, limit: f64) -> bool {
-        self.corner.abs() > 0.02 && self.deviations() > limit
+        (-0.1..=-0.02).contains(&self.corner) && self.deviations() > limit
     }
 }
 

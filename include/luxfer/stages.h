@@ -113,8 +113,8 @@ typedef struct luxfer_rectify_params {
     /**
      * Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
      * distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN, the
-     * default: the distortion is measured, and undone if it exceeds 0.02 and three standard deviations. 0: none is
-     * undone.
+     * default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least two
+     * standard deviations, and the lines then meet better in vanishing points. 0: none is undone.
      */
     double distortion;
 } luxfer_rectify_params;
@@ -195,8 +195,8 @@ typedef struct luxfer_rectify_report {
     /** Standard deviations of the field squareness; NaN where squareness is NaN. */
     double squareness_errors[3];
     /**
-     * The distortion that was undone: the field distortion of luxfer_rectify_params, or else the measured distortion
-     * if it is significant; 0 if none was undone.
+     * The distortion that was undone: the field distortion of luxfer_rectify_params if it is set, or else the measured
+     * distortion or 0; 0 if none was undone.
      */
     double undone;
 } luxfer_rectify_report;

@@ -68,7 +68,7 @@ pub use squareness::Squareness;
 pub use unwarp::unwarp;
 pub use vanishing::VanishingPoint;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::perspective::VERTICAL;
 use crate::geometry::{Perspective, PhotoMap, Radial, Segment};
 use crate::image::{Image, pyramid, try_collect};
@@ -130,22 +130,50 @@ pub fn find_view(photo: &Image, params: &Params, job: Job) -> Result<View> {
     params.check()?;
     let Lines { segments, distortion } = find_lines(photo, params, job.part(0.0, 0.7))?;
     let size = [photo.width, photo.height];
-    let view = view_through(&lens(size, params, distortion)?, &segments, size, params, job.part(0.7, 1.0))?;
+    let given = given_lens(size, params)?;
+    let job = job.part(0.7, 1.0);
+    let view = match distortion.filter(|d| params.distortion.is_none() && d.is_worth_undoing()) {
+        None => view_through(&given, &segments, size, params, job)?,
+        Some(found) => {
+            let plain = view_through(&given, &segments, size, params, job.part(0.0, 0.5))?;
+            straightened(&plain, &found, &segments, size, params, job.part(0.5, 1.0))?.unwrap_or(plain)
+        }
+    };
     Ok(View { distortion, ..view })
 }
 
-/// Returns the distortion to undo: the given one, or else the measured one if it is significant. A measured distortion
-/// that cannot be undone, because the map would fold over inside the photo, is left alone.
-fn lens(size: [usize; 2], params: &Params, measured: Option<Distortion>) -> Result<Radial> {
-    let size = DVec2::new(size[0] as f64, size[1] as f64);
-    let centre = params.principal.unwrap_or(0.5 * size);
-    match params.distortion {
-        Some(corner) => Radial::new(corner, centre, size),
-        None => {
-            let significant = measured.filter(Distortion::is_significant);
-            Ok(significant.and_then(|d| Radial::new(d.corner, centre, size).ok()).unwrap_or(Radial::NONE))
-        }
+/// A measured distortion is undone only if the errors of the vanishing points fall below this share of their errors
+/// without the correction. Edges that are curved themselves look like distortion, but no correction makes them meet
+/// better in vanishing points. [bench vp:lenses]
+const MAX_ERROR_SHARE: f64 = 0.95;
+
+/// Returns the view after the measured distortion is undone; `None` if the lines meet hardly better than in the view
+/// without the correction (`plain`), or if the map would fold over in a photo with a distant principal point.
+fn straightened(
+    plain: &View,
+    found: &Distortion,
+    segments: &[Segment],
+    size: [usize; 2],
+    params: &Params,
+    job: Job,
+) -> Result<Option<View>> {
+    let Ok(lens) = given_lens(size, &Params { distortion: Some(found.corner), ..params.clone() }) else {
+        return Ok(None);
+    };
+    let error = |view: &View| view.vanishing_points.iter().map(|v| v.error * v.error).sum::<f64>().sqrt();
+    match view_through(&lens, segments, size, params, job) {
+        Ok(view) => Ok(Some(view).filter(|view| error(view) < MAX_ERROR_SHARE * error(plain))),
+        Err(e) if e.kind == ErrorKind::Degenerate => Ok(None),
+        Err(e) => Err(e),
     }
+}
+
+/// Returns the lens with the given distortion; one without distortion if none is given.
+fn given_lens([width, height]: [usize; 2], params: &Params) -> Result<Radial> {
+    let size = DVec2::new(width as f64, height as f64);
+    params
+        .distortion
+        .map_or(Ok(Radial::NONE), |corner| Radial::new(corner, params.principal.unwrap_or(0.5 * size), size))
 }
 
 /// Finds the straight edges of a photo, in pixels of the photo.
@@ -206,7 +234,7 @@ pub fn view_from_segments(
     if width == 0 || height == 0 {
         return Err(Error::argument(format!("image size is {width} x {height}; both must be at least 1")));
     }
-    view_through(&lens([width, height], params, None)?, segments, [width, height], params, job)
+    view_through(&given_lens([width, height], params)?, segments, [width, height], params, job)
 }
 
 /// Finds the vanishing points and the camera from segments of a photo that was taken through `lens`.

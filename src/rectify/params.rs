@@ -53,7 +53,8 @@ pub struct Params {
     /// the image.
     pub principal: Option<DVec2>,
     /// Radial distortion of the lens that is undone, as [`Distortion::corner`](super::Distortion::corner), in
-    /// `[-1, 0.2]`; 0 undoes none. If absent, the distortion is measured, and undone if it is significant.
+    /// `[-1, 0.2]`; 0 undoes none. If absent, the distortion is measured, and undone if it is
+    /// [worth undoing](super::Distortion::is_worth_undoing) and the lines then meet better in vanishing points.
     pub distortion: Option<f64>,
     pub seed: u64,
 }

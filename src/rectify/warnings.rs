@@ -78,7 +78,7 @@ impl View {
             found.corner.abs(),
             MAX_DISTORTION,
             || format!("the lens bends straight lines: {} of {kind} distortion", percent(found.corner.abs())),
-            "leave distortion of the rectification at its default, which undoes it, or set its value",
+            "set distortion of the rectification to the distortion of the lens, unless the edges in the photo are curved",
         )
     }
 

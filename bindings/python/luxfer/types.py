@@ -1516,8 +1516,8 @@ class RectifyParams(TypedDict, total=False):
     distortion: float
     """Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
     distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN,
-    the default: the distortion is measured, and undone if it exceeds 0.02 and three standard deviations. 0:
-    none is undone."""
+    the default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least
+    two standard deviations, and the lines then meet better in vanishing points. 0: none is undone."""
 
 
 @dataclass(frozen=True)
@@ -1572,8 +1572,8 @@ class RectifyReport:
     squareness_errors: tuple[float, float, float]
     """Standard deviations of the field squareness; NaN where squareness is NaN."""
     undone: float
-    """The distortion that was undone: the field distortion of RectifyParams, or else the measured distortion if
-    it is significant; 0 if none was undone."""
+    """The distortion that was undone: the field distortion of RectifyParams if it is set, or else the measured
+    distortion or 0; 0 if none was undone."""
 
 
 class FeaturesParams(TypedDict, total=False):
