@@ -151,41 +151,47 @@ fn print_bounds(sets: &[Option<GivenSet>; 2]) {
 const YORK_FOCAL: f64 = 674.858;
 /// Radial distortions that are undone in York Urban's segments.
 const UNDONE: [f64; 6] = [0.0, -0.01, -0.02, -0.03, -0.04, -0.05];
-/// Numbers of standard deviations from which a measured distortion is undone.
-const LIMITS: [f64; 5] = [1.0, 1.5, 2.0, 2.5, 3.0];
+/// Development photos of the corpus that were cut out of panoramas, in which a distortion is measured although they have
+/// none.
+const CURVED: [&str; 6] = [
+    "chester_dining",
+    "civil_battens_a",
+    "civil_battens_b",
+    "dula_hotel_spots",
+    "north2003_linear",
+    "north2408_indirect",
+];
+const YORK: [&str; 8] = ["yud_008", "yud_009", "yud_034", "yud_037", "yud_047", "yud_049", "yud_059", "yud_076"];
 
 /// Measures what undoing the distortion of the lens changes: on photos of York Urban, whose camera has barrel
 /// distortion, and on views cut out of panoramas, which have none.
 fn lenses(york: &Option<GivenSet>, panoramas: &[Labelled]) {
     let Some(set) = york else { return absent("vp.york.focal_error", "York Urban is not there") };
     undone_segments(set);
-    let Some(folder) = truth::data("photos") else { return };
-    let mut cases: Vec<LensCase> = panoramas.iter().map(LensCase::of_panorama).collect();
-    for number in ["008", "009", "034", "037", "047", "049", "059", "076"] {
-        let name = format!("yud_{number}");
-        let photo = io::load(&folder.join(format!("{name}.jpg")), Encoding::Srgb).unwrap().to_rgb().unwrap();
-        cases.push(LensCase::new(&name, &photo, YORK_FOCAL));
-    }
+    let mut cases: Vec<LensCase> =
+        panoramas.iter().map(|l| LensCase::new(&l.name, &l.photo, l.intrinsics.x_axis.x)).collect();
+    cases.extend(CURVED.into_iter().filter_map(|name| LensCase::load("corpus", name)));
+    cases.extend(YORK.into_iter().filter_map(|name| LensCase::load("photos", name)));
     let percent = |value: f64| format!("{:.1}", 100.0 * value);
-    let mut table = Table::new(["photo", "distortion, %", "errors", "focal error, %", "undone"]);
-    for case in &cases {
-        let [off, on] = case.focal_errors.map(percent);
-        let measured = percent(case.corner);
-        table.row([case.name.clone(), measured, format!("{:.1}", case.deviations()), off, on]);
+    let header =
+        ["photo", "measured, %", "errors", "focal error, %", "undone", "vanishing points' error, ratio", "by default"];
+    let mut table = Table::new(header);
+    for case in cases.iter().filter(|case| case.corner.abs() > case.error) {
+        let [off, on, default] = case.focal_errors.map(percent);
+        let errors = format!("{:.1}", case.corner.abs() / case.error);
+        let ratio = format!("{:.2}", case.vanishing_ratio);
+        table.row([case.name.clone(), percent(case.corner), errors, off, on, ratio, default]);
     }
-    table.print("Measured distortion, and the focal error before and after it is undone");
-    let mut table = Table::new(["undone from", "York, mean focal error, %", "panoramas", "panoramas changed"]);
-    for limit in LIMITS.into_iter().chain([f64::INFINITY]) {
-        let mean = |is_york: bool| {
-            let of = cases.iter().filter(|case| case.name.starts_with("yud_") == is_york);
-            let errors: Vec<f64> = of.map(|case| case.focal_errors[usize::from(case.is_undone(limit))].abs()).collect();
-            errors.iter().sum::<f64>() / errors.len() as f64
-        };
-        let changed = cases.iter().filter(|case| !case.name.starts_with("yud_") && case.is_undone(limit)).count();
-        let limits = format!("{limit:.1} errors, barrel of 2 to 10 %");
-        table.row([limits, percent(mean(true)), percent(mean(false)), changed.to_string()]);
+    table
+        .print("Distortions measured beyond one standard deviation, and the focal error before and after undoing them");
+    let mut table = Table::new(["photos", "none undone", "every one undone", "by default", "changed by default"]);
+    for (set, is_york) in [("York Urban", true), ("panoramas", false)] {
+        let of = || cases.iter().filter(|case| case.name.starts_with("yud_") == is_york);
+        let mean = |k: usize| percent(of().map(|case| case.focal_errors[k].abs()).sum::<f64>() / of().count() as f64);
+        let changed = of().filter(|case| case.is_undone).count();
+        table.row([set.to_string(), mean(0), mean(1), mean(2), format!("{changed} of {}", of().count())]);
     }
-    table.print("Limits from which a distortion is undone");
+    table.print("Mean focal error, %");
 }
 
 /// Prints the accuracy on York Urban's given segments after distortions are undone in them. The labels of directions
@@ -212,37 +218,39 @@ fn undone_segments(set: &GivenSet) {
     table.print("York Urban's given segments, first three directions, after a distortion is undone");
 }
 
-/// A photo whose focal length is known, the distortion measured in it, and the errors of the logarithm of the focal
-/// length without and with this distortion undone.
+/// A photo whose focal length is known, and the distortion measured in it.
 struct LensCase {
     name: String,
     corner: f64,
     error: f64,
-    focal_errors: [f64; 2],
+    /// Errors of the logarithm of the focal length: without correction, with the measured distortion undone, and by
+    /// default.
+    focal_errors: [f64; 3],
+    /// Stated error of the vanishing points after the distortion is undone, divided by the one before.
+    vanishing_ratio: f64,
+    /// Whether the distortion is undone by default.
+    is_undone: bool,
 }
 
 impl LensCase {
-    fn of_panorama(labelled: &Labelled) -> Self {
-        Self::new(&labelled.name, &labelled.photo, labelled.intrinsics.x_axis.x)
+    fn load(folder: &str, name: &str) -> Option<Self> {
+        let path = truth::data(folder)?.join(format!("{name}.jpg"));
+        let focal = truth::read_json(&path.with_extension("json"))["fx"].as_f64().unwrap_or(YORK_FOCAL);
+        Some(Self::new(name, &io::load(&path, Encoding::Srgb).ok()?.to_rgb().ok()?, focal))
     }
 
     fn new(name: &str, photo: &Image, focal: f64) -> Self {
-        let view = |distortion: f64| {
-            let params = Params { distortion: Some(distortion), ..Params::default() };
+        let view = |distortion: Option<f64>| {
+            let params = Params { distortion, ..Params::default() };
             rectify::find_view(photo, &params, Monitor::default().job()).unwrap()
         };
-        let off = view(0.0);
+        let off = view(Some(0.0));
         let [corner, error] = off.distortion.map_or([0.0, f64::INFINITY], |found| [found.corner, found.error]);
-        let focal_errors = [off, view(corner.clamp(-1.0, 0.2))].map(|view| (view.perspective.focal / focal).ln());
-        Self { name: name.into(), corner, error, focal_errors }
-    }
-
-    fn deviations(&self) -> f64 {
-        self.corner.abs() / self.error
-    }
-
-    fn is_undone(&self, limit: f64) -> bool {
-        (-0.1..=-0.02).contains(&self.corner) && self.deviations() > limit
+        let views = [off, view(Some(corner.clamp(-1.0, 0.2))), view(None)];
+        let focal_errors = views.each_ref().map(|view| (view.perspective.focal / focal).ln());
+        let stated = |view: &rectify::View| view.vanishing_points.iter().map(|v| v.error * v.error).sum::<f64>().sqrt();
+        let vanishing_ratio = stated(&views[1]) / stated(&views[0]);
+        Self { name: name.into(), corner, error, focal_errors, vanishing_ratio, is_undone: views[2].undone != 0.0 }
     }
 }
 
