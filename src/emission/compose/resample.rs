@@ -103,7 +103,7 @@ impl Levels<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Homography;
+    use crate::geometry::{Homography, Radial};
     use crate::job::Monitor;
     use glam::DMat3;
 
@@ -148,6 +148,21 @@ mod tests {
         for y in [0.9, 1.0, 1.0 + 1e-9, 1.5] {
             mean(&photo, &horizon, DVec2::new(0.5, y), 1.0);
         }
+    }
+
+    #[test]
+    fn the_distortion_of_a_lens_is_part_of_the_map() {
+        // In the photo of an ideal lens, the values would be linear, so their mean is the value at the centre.
+        let lens = Radial::new(-0.2, DVec2::new(48.0, 15.0), DVec2::new(96.0, 30.0)).unwrap();
+        let photo = Image::from_fn(96, 30, |x, y| {
+            let ideal = lens.ideal(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+            [(ideal.x + 10.0 * ideal.y) as f32; 3]
+        });
+        let homography = Homography(DMat3::from_diagonal(glam::DVec3::new(12.0, 3.0, 1.0)));
+        let at = |map: &PhotoMap| mean(photo.as_ref().unwrap(), map, DVec2::new(5.5, 6.5), 1.0).unwrap().x;
+        let found = at(&PhotoMap { homography, lens });
+        assert!((found - (66.0 + 195.0)).abs() < 0.1, "{found}");
+        assert!((at(&homography.into()) - found).abs() > 1.0);
     }
 
     #[test]
