@@ -145,7 +145,7 @@ fn layout_row(case: &Case, found: &features::Features, measured: &Image) -> (f64
 }
 
 fn looking(focal: f64, principal: DVec2, axes: DMat3) -> Perspective {
-    Perspective { focal, focal_source: FocalSource::Given, principal, axes }
+    Perspective { focal, focal_source: FocalSource::Given, principal, bend: 0.0, axes }
 }
 
 /// A box-shaped room with a table in it, seen at an angle. The depth along z has noise whose relative size grows with

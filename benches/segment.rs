@@ -87,7 +87,8 @@ fn room(seed: u64) -> [Case; 2] {
     let mut between = |low: f64, high: f64| low + (high - low) * draw.next_f64();
     let axes = DMat3::from_rotation_y(between(-0.5, 0.5)) * DMat3::from_rotation_x(-between(0.1, 0.35));
     let principal = DVec2::new(width as f64, height as f64) / 2.0;
-    let camera = Perspective { focal: between(600.0, 900.0), focal_source: FocalSource::Given, principal, axes };
+    let camera =
+        Perspective { focal: between(600.0, 900.0), focal_source: FocalSource::Given, principal, bend: 0.0, axes };
     let faces = [(1, -1.3), (1, 1.3), (0, -2.2), (0, 2.4), (2, 5.0), (2, -2.0)];
     let paints =
         [[0.62, 0.6, 0.55], [0.2, 0.15, 0.1], [0.6, 0.57, 0.52], [0.45, 0.5, 0.48], [0.63, 0.6, 0.54], [0.5; 3]];

@@ -2,20 +2,21 @@
 //! re-projected panoramas, and the error against time with fewer lines or pixels. The latter is measured also on
 //! generated rooms, whose directions are known exactly.
 //!
-//! Arguments select sections: accuracy on given segments (`segments`) and on panoramas (`panoramas`); time, and error
-//! against time (`curves`).
+//! Arguments select sections: accuracy on given segments (`segments`) and on panoramas (`panoramas`); undone distortions
+//! of lenses (`lenses`); time, and error against time (`curves`).
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
 mod truth;
 
-use glam::{DMat3, DVec3, Quat};
+use glam::{DMat3, DVec2, DVec3, Quat};
 use harness::plot::Plot;
 use harness::{Clock, Table, absent, figure, interleaved, quantile, scenes, time};
 use luxfer::demo::photo::{self, photograph};
 use luxfer::exec::Pool;
-use luxfer::geometry::Segment;
-use luxfer::image::pyramid;
+use luxfer::geometry::{Radial, Segment};
+use luxfer::image::io::{self, Encoding};
+use luxfer::image::{Image, pyramid};
 use luxfer::job::Monitor;
 use luxfer::rectify::{self, Metric, Params, Search, vanishing};
 use luxfer::scene::Camera;
@@ -45,6 +46,9 @@ fn main() {
     let photos = labelled_photos();
     if wants("panoramas") {
         pool.run(|| panoramas(&photos));
+    }
+    if wants("lenses") {
+        pool.run(|| lenses(&sets[1], &photos));
     }
     if wants("curves") {
         pool.run(|| curves(&sets, &photos));
@@ -141,6 +145,113 @@ fn print_bounds(sets: &[Option<GivenSet>; 2]) {
         }
     }
     bound.print("Lower bound of the error: directions fitted to the lines labelled with them, the camera known");
+}
+
+/// Focal length of York Urban's camera in pixels, by its calibration.
+const YORK_FOCAL: f64 = 674.858;
+/// Radial distortions that are undone in York Urban's segments.
+const UNDONE: [f64; 6] = [0.0, -0.01, -0.02, -0.03, -0.04, -0.05];
+/// Development photos of the corpus that were cut out of panoramas, in which a distortion is measured although they have
+/// none.
+const CURVED: [&str; 6] = [
+    "chester_dining",
+    "civil_battens_a",
+    "civil_battens_b",
+    "dula_hotel_spots",
+    "north2003_linear",
+    "north2408_indirect",
+];
+const YORK: [&str; 8] = ["yud_008", "yud_009", "yud_034", "yud_037", "yud_047", "yud_049", "yud_059", "yud_076"];
+
+/// Measures what undoing the distortion of the lens changes: on photos of York Urban, whose camera has barrel
+/// distortion, and on views cut out of panoramas, which have none.
+fn lenses(york: &Option<GivenSet>, panoramas: &[Labelled]) {
+    let Some(set) = york else { return absent("vp.york.focal_error", "York Urban is not there") };
+    undone_segments(set);
+    let mut cases: Vec<LensCase> =
+        panoramas.iter().map(|l| LensCase::new(&l.name, &l.photo, l.intrinsics.x_axis.x)).collect();
+    cases.extend(CURVED.into_iter().filter_map(|name| LensCase::load("corpus", name)));
+    cases.extend(YORK.into_iter().filter_map(|name| LensCase::load("photos", name)));
+    let percent = |value: f64| format!("{:.1}", 100.0 * value);
+    let header =
+        ["photo", "measured, %", "errors", "focal error, %", "undone", "vanishing points' error, ratio", "by default"];
+    let mut table = Table::new(header);
+    for case in cases.iter().filter(|case| case.corner.abs() > case.error) {
+        let [off, on, default] = case.focal_errors.map(percent);
+        let errors = format!("{:.1}", case.corner.abs() / case.error);
+        let ratio = format!("{:.2}", case.vanishing_ratio);
+        table.row([case.name.clone(), percent(case.corner), errors, off, on, ratio, default]);
+    }
+    table
+        .print("Distortions measured beyond one standard deviation, and the focal error before and after undoing them");
+    let mut table = Table::new(["photos", "none undone", "every one undone", "by default", "changed by default"]);
+    for (set, is_york) in [("York Urban", true), ("panoramas", false)] {
+        let of = || cases.iter().filter(|case| case.name.starts_with("yud_") == is_york);
+        let mean = |k: usize| percent(of().map(|case| case.focal_errors[k].abs()).sum::<f64>() / of().count() as f64);
+        let changed = of().filter(|case| case.is_undone).count();
+        table.row([set.to_string(), mean(0), mean(1), mean(2), format!("{changed} of {}", of().count())]);
+    }
+    table.print("Mean focal error, %");
+}
+
+/// Prints the accuracy on York Urban's given segments after distortions are undone in them. The labels of directions
+/// are intersections of lines in the distorted photos; the calibrated focal length does not depend on them.
+fn undone_segments(set: &GivenSet) {
+    let mut table = Table::new(["undone, %", "AUC@10", "AUC@5", "median deg", "median focal error, %"]);
+    let size = DVec2::new(set.width as f64, set.height as f64);
+    for corner in UNDONE {
+        let lens = Radial::new(corner, 0.5 * size, size).unwrap();
+        let straight = |s: &Segment| Segment { a: lens.ideal(s.a), b: lens.ideal(s.b) };
+        let images = set.images.iter().map(|(s, truth)| (s.iter().map(straight).collect(), truth.clone()));
+        let undone = GivenSet { images: images.collect(), ..*set }.first_three();
+        let angles = undone.angles(&Params::default());
+        let focal = |segments: &Vec<Segment>| {
+            let monitor = Monitor::default();
+            let view = rectify::view_from_segments(segments, set.width, set.height, &Params::default(), monitor.job());
+            view.map_or(f64::NAN, |view| (view.perspective.focal / YORK_FOCAL).ln().abs())
+        };
+        let focals: Vec<f64> = undone.images.iter().map(|(segments, _)| focal(segments)).collect();
+        let [ten, five] = [10.0, 5.0].map(|limit| format!("{:.1}", 100.0 * area(&angles, limit)));
+        let [median, focal] = [quantile(&angles, 0.5), 100.0 * quantile(&focals, 0.5)].map(|v| format!("{v:.2}"));
+        table.row([format!("{:.0}", 100.0 * corner), ten, five, median, focal]);
+    }
+    table.print("York Urban's given segments, first three directions, after a distortion is undone");
+}
+
+/// A photo whose focal length is known, and the distortion measured in it.
+struct LensCase {
+    name: String,
+    corner: f64,
+    error: f64,
+    /// Errors of the logarithm of the focal length: without correction, with the measured distortion undone, and by
+    /// default.
+    focal_errors: [f64; 3],
+    /// Stated error of the vanishing points after the distortion is undone, divided by the one before.
+    vanishing_ratio: f64,
+    /// Whether the distortion is undone by default.
+    is_undone: bool,
+}
+
+impl LensCase {
+    fn load(folder: &str, name: &str) -> Option<Self> {
+        let path = truth::data(folder)?.join(format!("{name}.jpg"));
+        let focal = truth::read_json(&path.with_extension("json"))["fx"].as_f64().unwrap_or(YORK_FOCAL);
+        Some(Self::new(name, &io::load(&path, Encoding::Srgb).ok()?.to_rgb().ok()?, focal))
+    }
+
+    fn new(name: &str, photo: &Image, focal: f64) -> Self {
+        let view = |distortion: Option<f64>| {
+            let params = Params { distortion, ..Params::default() };
+            rectify::find_view(photo, &params, Monitor::default().job()).unwrap()
+        };
+        let off = view(Some(0.0));
+        let [corner, error] = off.distortion.map_or([0.0, f64::INFINITY], |found| [found.corner, found.error]);
+        let views = [off, view(Some(corner.clamp(-1.0, 0.2))), view(None)];
+        let focal_errors = views.each_ref().map(|view| (view.perspective.focal / focal).ln());
+        let stated = |view: &rectify::View| view.vanishing_points.iter().map(|v| v.error * v.error).sum::<f64>().sqrt();
+        let vanishing_ratio = stated(&views[1]) / stated(&views[0]);
+        Self { name: name.into(), corner, error, focal_errors, vanishing_ratio, is_undone: views[2].undone != 0.0 }
+    }
 }
 
 /// Times the search for vanishing points on images with `SEGMENTS` segments.

@@ -572,10 +572,10 @@ layouts! {
     luxfer_segment_params: struct_size samples_per_class channels refine_radius ridge seed refine_tolerance subject reserved;
     luxfer_segment_report: struct_size channels error negative_samples positive_samples contradictory_pixels;
     luxfer_rectify_params: struct_size detector search metric hough_band focal principal plane_axes max_side reserved
-        max_magnification seed;
+        max_magnification seed distortion;
     luxfer_rectify_report: struct_size segments vanishing_points vanishing_errors vanishing_support focal_source
         focal principal axes is_unwarped reserved to_photo corners corner_errors pixel_size aspect_confidence
-        distortion distortion_error squareness squareness_errors;
+        distortion distortion_error squareness squareness_errors undone;
     luxfer_emission_params: struct_size width height block scale working_side guide_weight seed min_regularity
         whole_lamps offset clip_level even_lamps tileable centred candidates reserved law clean_lamps max_magnification;
     luxfer_emission_report: struct_size luminaires error regularity exemplar_lamps sampling_error law runner_up

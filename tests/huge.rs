@@ -54,7 +54,7 @@ fn drawing() -> Image {
     let [width, height] = SIZE;
     let axes = DMat3::from_rotation_y(0.4) * DMat3::from_rotation_x(-0.2);
     let principal = DVec2::new(width as f64, height as f64) / 2.0;
-    let camera = Perspective { focal: 360.0, focal_source: FocalSource::Given, principal, axes };
+    let camera = Perspective { focal: 360.0, focal_source: FocalSource::Given, principal, bend: 0.0, axes };
     let faces = [(1, -1.2, 0.9), (1, 1.3, 0.25), (0, -2.1, 0.5), (0, 2.3, 0.6), (2, 4.2, 0.4)];
     const SUB: usize = 4;
     let seen = |p: DVec2| {

@@ -23,7 +23,7 @@ fn camera() -> Perspective {
     let ahead = DVec3::new(0.0, 0.6, 0.8);
     let axes = DMat3::from_cols(down.cross(ahead), down, ahead);
     let principal = DVec2::new(SIZE[0] as f64, SIZE[1] as f64) / 2.0;
-    Perspective { focal: 560.0, focal_source: FocalSource::Given, principal, axes }
+    Perspective { focal: 560.0, focal_source: FocalSource::Given, principal, bend: 0.0, axes }
 }
 
 fn on_ceiling(pixel: DVec2) -> DVec2 {

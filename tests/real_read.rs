@@ -64,6 +64,7 @@ fn camera(photo: &serde_json::Value) -> Perspective {
         focal,
         focal_source: FocalSource::Given,
         principal: DVec2::new(cx, cy),
+        bend: 0.0,
         axes: DMat3::from_cols(x, y, x.cross(y)),
     }
 }
@@ -196,6 +197,7 @@ fn measured_depth_gives_smooth_walls_and_upright_normals() {
         focal: (k("fx") + k("fy")) / 2.0,
         focal_source: FocalSource::Given,
         principal: DVec2::new(k("cx"), k("cy")),
+        bend: 0.0,
         axes: DMat3::IDENTITY,
     };
     for name in ["nyu_00000", "nyu_00050", "nyu_00100"] {

@@ -92,6 +92,29 @@ fn distortion_is_reported_for_lenses_that_have_some() {
     assert!(barrels >= 4 && york.iter().all(|share| *share < 1.0), "{york:.1?}");
 }
 
+/// Focal length of York Urban's camera in pixels, by its calibration.
+const YORK_FOCAL: f64 = 674.858;
+
+/// Undoing the barrel distortion of York Urban's camera brings the focal lengths closer to its calibration.
+#[test]
+fn an_undone_distortion_improves_the_focal_length() {
+    let Some(folder) = data("photos") else { return };
+    let mut sums = [0.0; 3];
+    for number in ["008", "009", "034", "037", "047", "049", "059", "076"] {
+        let photo = io::load(&folder.join(format!("yud_{number}.jpg")), Encoding::Srgb).unwrap().to_rgb().unwrap();
+        for (sum, distortion) in sums.iter_mut().zip([Some(0.0), None, Some(-0.03)]) {
+            let params = Params { distortion, ..Params::default() };
+            let view = rectify::find_view(&photo, &params, Monitor::default().job()).unwrap();
+            let error = (view.perspective.focal / YORK_FOCAL).ln();
+            println!("yud_{number}: undone {:5.1} %, focal length {:5.1} %", 100.0 * view.undone, 100.0 * error);
+            *sum += error.abs() / 8.0;
+        }
+    }
+    let [off, measured, common] = sums;
+    println!("mean error: off {off:.3}, as measured {measured:.3}, -3 % in all {common:.3}");
+    assert!(measured < off && common < 0.75 * off, "{sums:?}");
+}
+
 /// Checks estimates whose true value is 0: their sizes, each divided by its stated error, may be hardly larger than
 /// those of a normal distribution.
 fn check_calibration(what: &str, mut shares: Vec<f64>) {

@@ -18,6 +18,7 @@ fn camera() -> Perspective {
         focal: FOCAL,
         focal_source: FocalSource::Given,
         principal: DVec2::new(330.0, 650.0),
+        bend: 0.0,
         axes: DMat3::from_quat(
             DQuat::from_rotation_z(0.02) * DQuat::from_rotation_x(0.06) * DQuat::from_rotation_y(0.45),
         ),

@@ -7,7 +7,7 @@ use crate::{DESIGNS, Exemplar, save};
 use glam::{DMat3, DVec2, Vec3};
 use luxfer::emission::pairs::{self, Points};
 use luxfer::emission::{self, Emission, Input, Luminaire, Params};
-use luxfer::geometry::Homography;
+use luxfer::geometry::{Homography, PhotoMap};
 use luxfer::image::Image;
 use luxfer::image::colour::luminance;
 use luxfer::image::io::{self, Encoding};
@@ -82,7 +82,7 @@ fn continued(photo: &Image, light: &Image, to_photo: &Homography) -> (Exemplar, 
     let mut white = Image::new(photo.width, photo.height, 1).expect("a mask");
     white.data.fill(1.0);
     let exemplar = Exemplar { unwarped: warp(photo), light: warp(light), valid: warp(&white) };
-    let input = Input { photo: Some((photo, *to_photo)), ..exemplar.input() };
+    let input = Input { photo: Some((photo, (*to_photo).into())), ..exemplar.input() };
     let params = Params { width: 800, height: 720, ..Params::default() };
     let result = emission::run(&input, &params, Monitor::default().job()).expect("a texture");
     (exemplar, result)
@@ -142,7 +142,7 @@ fn photo_of(name: &str) -> Option<PathBuf> {
 
 /// Returns the exemplar that a transfer unwarps from a photo of the test data, the photo, and the map from unwarped
 /// pixels into the photo.
-fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homography), String> {
+fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, PhotoMap), String> {
     let text = |e: luxfer::error::Error| e.message;
     let photo = io::load(&photo_of(name).ok_or("no photo")?, Encoding::Srgb).map_err(text)?;
     let drawn = std::fs::read_to_string(root.join(format!("{name}.txt"))).map_err(|e| e.to_string())?;
@@ -157,7 +157,7 @@ fn unwarped(root: &std::path::Path, name: &str) -> Result<(Exemplar, Image, Homo
     let job = Monitor::default();
     // Blur the mask as a transfer does, so that the edge of a clipped lamp is not a staircase of whole pixels.
     let smooth = luxfer::image::pyramid::blur(&lights.confidence, EDGE_BLUR, job.job()).map_err(text)?;
-    let light = rectify::warp(&smooth, &plane.to_photo, width, height, job.job()).map_err(text)?;
+    let light = rectify::warp_photo(&smooth, &plane.to_photo, width, height, job.job()).map_err(text)?;
     let photo = transfer.input.photo.as_deref().cloned().unwrap_or_default();
     let exemplar = Exemplar { unwarped: plane.image.clone(), light, valid: plane.valid.clone() };
     Ok((exemplar, photo, plane.to_photo))

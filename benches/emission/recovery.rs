@@ -89,7 +89,7 @@ fn recovered(photo: &Image, map: Homography) -> (f64, Image) {
         image
     };
     let (unwarped, light, valid) = (image(3), image(1), image(1));
-    let input = Input { unwarped: &unwarped, light: &light, valid: &valid, photo: Some((photo, map)) };
+    let input = Input { unwarped: &unwarped, light: &light, valid: &valid, photo: Some((photo, map.into())) };
     let params = Params { width: SIDE, height: SIDE, clip_level: 0.0, ..Params::default() };
     let monitor = Monitor::default();
     let plan = Composition::new(&input, &[], &params, monitor.job()).expect("a plan");

@@ -110,6 +110,13 @@ typedef struct luxfer_rectify_params {
     double max_magnification;
     /** Seed of the search; default 1. */
     uint64_t seed;
+    /**
+     * Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
+     * distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN, the
+     * default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least two
+     * standard deviations, and the lines then meet better in vanishing points. 0: none is undone.
+     */
+    double distortion;
 } luxfer_rectify_params;
 
 /** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
@@ -131,7 +138,7 @@ typedef struct luxfer_rectify_report {
     uint32_t segments;
     /**
      * Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0
-     * at infinity.
+     * at infinity. If a distortion was undone, they lie in the photo that luxfer_rectify_undistort makes.
      */
     double vanishing_points[3][3];
     /** Standard deviation of the direction to each vanishing point in camera space, in radians. */
@@ -155,7 +162,8 @@ typedef struct luxfer_rectify_report {
     uint32_t reserved;
     /**
      * Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp unwarps
-     * other images of the photo's size, such as the confidence of the lights.
+     * other images of the photo's size, such as the confidence of the lights. If a distortion was undone, it leads to
+     * the pixels of the photo that luxfer_rectify_undistort makes; undistort the other images first.
      */
     double to_photo[9];
     /** Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise. */
@@ -172,7 +180,7 @@ typedef struct luxfer_rectify_report {
     /**
      * Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
      * below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of straight
-     * edges, and not corrected. NaN if the photo has too few lines.
+     * edges. NaN if the photo has too few lines.
      */
     double distortion;
     /** Standard deviation of the field distortion; NaN if distortion is NaN. */
@@ -186,6 +194,11 @@ typedef struct luxfer_rectify_report {
     double squareness[3];
     /** Standard deviations of the field squareness; NaN where squareness is NaN. */
     double squareness_errors[3];
+    /**
+     * The distortion that was undone: the field distortion of luxfer_rectify_params if it is set, or else the measured
+     * distortion or 0; 0 if none was undone.
+     */
+    double undone;
 } luxfer_rectify_report;
 
 /**
@@ -285,6 +298,16 @@ luxfer_status luxfer_rectify_start(luxfer_rectify *rectify,
 luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
                                        luxfer_rectify_image kind,
                                        luxfer_image **image);
+
+/**
+ * Undoes the distortion of the lens in an image of the photo's size, such as the photo or a mask: makes the image that
+ * an ideal lens would have taken, with the same size and principal point. Pixels beyond the image are 0. If no
+ * distortion was undone, the new image equals the old one. The caller releases *undistorted. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_INVALID_ARGUMENT if the image has not the photo's size.
+ */
+luxfer_status luxfer_rectify_undistort(luxfer_rectify *rectify,
+                                       luxfer_image *image,
+                                       luxfer_image **undistorted);
 
 /**
  * Gets the camera and the unwarping, with their errors. size is sizeof *report. Any thread.
@@ -923,8 +946,9 @@ luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
 
 /**
  * Sets the photo, from which the texture takes its full detail, and the homography from unwarped pixels to photo
- * pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the
- * unwarped image only. Any thread.
+ * pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). If the rectification has undone a distortion, this is
+ * the photo that luxfer_rectify_undistort makes. photo may be NULL: the detail then comes from the unwarped image
+ * only. Any thread.
  */
 luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         luxfer_image *photo,

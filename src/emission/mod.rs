@@ -67,7 +67,7 @@ pub use params::{Input, LawMode, Params, SCALES};
 pub use sizing::{Scale, Sizing, TexelGrid};
 
 use crate::error::{Error, Result};
-use crate::geometry::Homography;
+use crate::geometry::PhotoMap;
 use crate::image::Image;
 use crate::job::Job;
 use analysis::Analysis;
@@ -161,7 +161,7 @@ fn blend_analysed(
 /// Makes each lamp of the unwarped light mask one piece. If the mask shows a luminous ceiling, removes the bars between
 /// its panes, so that each pane becomes a lamp. Otherwise, joins the parts of lamps that the mask separates. Returns
 /// the mask unchanged if there is nothing to remove or to join.
-pub fn complete_lights(unwarped: &Image, light: Image, valid: &Image, to_photo: Homography, job: Job) -> Result<Image> {
+pub fn complete_lights(unwarped: &Image, light: Image, valid: &Image, to_photo: PhotoMap, job: Job) -> Result<Image> {
     let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
     let parted = panes::part(&plane, job)?;
     let completed = if parted.is_some() { parted } else { joins::join(&plane, job)? };

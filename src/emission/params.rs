@@ -1,7 +1,7 @@
 //! The input of emission (the unwarped photo), and its settings.
 
 use crate::error::{Error, Result, check_range};
-use crate::geometry::Homography;
+use crate::geometry::PhotoMap;
 use crate::image::Image;
 use glam::DVec2;
 use std::ops::RangeInclusive;
@@ -20,7 +20,7 @@ pub struct Input<'a> {
     pub valid: &'a Image,
     /// The photo, which has full resolution, and the homography from unwarped pixels to photo pixels. If absent, the
     /// unwarped image is the finest source.
-    pub photo: Option<(&'a Image, Homography)>,
+    pub photo: Option<(&'a Image, PhotoMap)>,
 }
 
 /// How the law of a texture is chosen (see [`Law`](super::Law)): by comparison, by the autocorrelation alone, or by
@@ -156,7 +156,7 @@ impl Input<'_> {
             }
         }
         if let Some((_, to_photo)) = self.photo
-            && !to_photo.0.is_finite()
+            && !to_photo.homography.0.is_finite()
         {
             return Err(Error::argument("the map from the unwarped image to the photo is not finite"));
         }

@@ -269,7 +269,7 @@ fn copied_lamps_are_those_of_the_exemplar_and_a_photo_adds_detail() {
     // pixels.
     let photo = Image::from_fn(400, 400, |x, y| [(x % 7) as f32, (y % 5) as f32, (x * y % 3) as f32]).unwrap();
     let to_photo = Homography(glam::DMat3::from_scale(DVec2::splat(2.0)));
-    let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
+    let input = Input { photo: Some((&photo, to_photo.into())), ..exemplar.input() };
     let params = Params { width: 400, height: 400, scale: 0.5, ..Params::default() };
     let result = run(&input, &params, Monitor::default().job()).unwrap();
     let mut lit = 0;
@@ -292,7 +292,7 @@ fn a_coarse_photo_does_not_give_its_steps_to_the_outlines() {
     let exemplar = Design::new(250, 200, is_lamp);
     let photo = Image::from_fn(50, 40, |_, _| [0.5; 3]).unwrap();
     let to_photo = Homography(glam::DMat3::from_scale(DVec2::splat(0.2)));
-    let input = Input { photo: Some((&photo, to_photo)), ..exemplar.input() };
+    let input = Input { photo: Some((&photo, to_photo.into())), ..exemplar.input() };
     let params = Params { width: 150, height: 120, ..Params::default() };
     let result = run(&input, &params, Monitor::default().job()).unwrap();
     assert!(matches!(result.law, Law::Lattice(_)), "{:?}", result.law);

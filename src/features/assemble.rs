@@ -21,10 +21,8 @@ struct Geometry<'a> {
     normals: &'a [f32],
     frustum: &'a Frustum,
     to_room: Mat3,
-    /// Normalised device coordinates of the first pixel of the tile (`start`), and the step of x between neighbouring
-    /// pixels (`step`).
-    start: Vec2,
-    step: f32,
+    /// Normalised device coordinates of the pixels.
+    ndc: &'a [Vec2; TILE],
 }
 
 /// Computes all channels of row `y`; `to_room` rotates camera axes into room axes.
@@ -36,13 +34,17 @@ pub fn row(photo: &Image, surface: &Surface, frustum: &Frustum, to_room: Mat3, y
         let [r, g, b, ..] = &mut planes;
         spread(&photo.row(y)[x * photo.channels..][..n * photo.channels], photo.channels, [r, g, b]);
         colour::planes_to_lab(r, g, b);
+        let (start, step) = (frustum.ndc(x, y, width, height), 2.0 / width as f32);
+        let ndc = std::array::from_fn(|k| match frustum.lens.is_none() {
+            true => Vec2::new(start.x + step * k as f32, start.y),
+            false => frustum.ndc(x + k, y, width, height),
+        });
         let geometry = Geometry {
             inverse_depth: &surface.inverse_depth.row(y)[x..x + n],
             normals: &surface.normals.row(y)[3 * x..3 * (x + n)],
             frustum,
             to_room,
-            start: frustum.ndc(x, y, width, height),
-            step: 2.0 / width as f32,
+            ndc: &ndc,
         };
         place(&geometry, &mut planes);
         join(&planes, out);
@@ -75,7 +77,7 @@ widest! {
         let (inverse_depth, normals) = (&from.inverse_depth[..n], &from.normals[..3 * n]);
         for k in 0..n {
             let screen_depth = from.frustum.screen_depth(inverse_depth[k]);
-            let ndc = Vec3::new(from.start.x + from.step * k as f32, from.start.y, screen_depth);
+            let ndc = from.ndc[k].extend(screen_depth);
             let position = from.to_room * from.frustum.unproject(ndc);
             let normal = from.to_room * Vec3::new(normals[3 * k], normals[3 * k + 1], normals[3 * k + 2]);
             depth[k] = screen_depth;

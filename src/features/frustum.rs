@@ -6,8 +6,8 @@
 //! `1 - d_s`, and points beyond the far plane stay finite: `d_s` tends to `f / (f - n)` as z grows.
 
 use crate::error::{Error, Result};
-use crate::geometry::Perspective;
-use glam::{Vec2, Vec3};
+use crate::geometry::{Perspective, Radial};
+use glam::{DVec2, Vec2, Vec3};
 
 /// A view frustum in camera space (x right, y down, z forward). `left`, `right`, `top` and `bottom` are bounds on the
 /// near plane.
@@ -19,19 +19,23 @@ pub struct Frustum {
     pub bottom: f32,
     pub near: f32,
     pub far: f32,
+    /// Distortion of the lens; the bounds are those of an ideal lens.
+    pub lens: Radial,
 }
 
 impl Frustum {
     /// The paper's choice: bounds ±1 for any aspect ratio of the photo. The y axis points down here, so the top is -1.
     pub fn paper(near: f32, far: f32) -> Self {
-        Self { left: -1.0, right: 1.0, top: -1.0, bottom: 1.0, near, far }
+        Self { left: -1.0, right: 1.0, top: -1.0, bottom: 1.0, near, far, lens: Radial::NONE }
     }
 
-    /// The frustum of a real camera: its corner rays pass through the photo's corners.
+    /// The frustum of a real camera: its corner rays pass through the corners of the photo that an ideal lens would
+    /// take.
     pub fn of_camera(camera: &Perspective, width: usize, height: usize, near: f32, far: f32) -> Result<Self> {
-        let corner = |x: usize, y: usize| camera.ray(glam::DVec2::new(x as f64, y as f64)).as_vec3() * near;
+        let ideal = Perspective { bend: 0.0, ..*camera };
+        let corner = |x: usize, y: usize| ideal.ray(DVec2::new(x as f64, y as f64)).as_vec3() * near;
         let (low, high) = (corner(0, 0), corner(width, height));
-        let frustum = Self { left: low.x, right: high.x, top: low.y, bottom: high.y, near, far };
+        let frustum = Self { left: low.x, right: high.x, top: low.y, bottom: high.y, near, far, lens: camera.lens() };
         if camera.focal > 0.0 && camera.focal.is_finite() && low.is_finite() && high.is_finite() {
             return Ok(frustum);
         }
@@ -42,8 +46,13 @@ impl Frustum {
         )))
     }
 
-    /// Normalised device coordinates of a pixel's centre: -1 at the left and top border, 1 at the right and bottom.
+    /// Normalised device coordinates of a pixel's centre: -1 at the left and top border, 1 at the right and bottom. For
+    /// a lens with distortion, those of the point at which an ideal lens shows what the pixel shows.
     pub fn ndc(&self, x: usize, y: usize, width: usize, height: usize) -> Vec2 {
+        if !self.lens.is_none() {
+            let ideal = self.lens.ideal(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+            return (2.0 * ideal / DVec2::new(width as f64, height as f64) - 1.0).as_vec2();
+        }
         Vec2::new((2 * x + 1) as f32 / width as f32 - 1.0, (2 * y + 1) as f32 / height as f32 - 1.0)
     }
 
@@ -78,7 +87,7 @@ impl Frustum {
 mod tests {
     use super::*;
     use crate::geometry::FocalSource;
-    use glam::{DMat3, DVec2, DVec3, Mat4, Vec4};
+    use glam::{DMat3, DVec3, Mat4, Vec4};
 
     /// The standard matrix (OpenGL `glFrustum`, y up and looking along -z), inverted, yields the same points.
     #[test]
@@ -100,7 +109,8 @@ mod tests {
 
     #[test]
     fn projecting_and_unprojecting_is_the_identity() {
-        let frustum = Frustum { left: -0.7, right: 0.6, top: -0.4, bottom: 0.9, near: 0.5, far: 20.0 };
+        let frustum =
+            Frustum { left: -0.7, right: 0.6, top: -0.4, bottom: 0.9, near: 0.5, far: 20.0, lens: Radial::NONE };
         for point in [Vec3::new(1.0, 2.0, 3.0), Vec3::new(-4.0, 0.1, 0.5), Vec3::new(30.0, -20.0, 80.0)] {
             let back = frustum.unproject(frustum.project(point));
             assert!((back - point).length() < 1e-4 * point.length(), "{point} {back}");
@@ -115,12 +125,18 @@ mod tests {
             focal: 500.0,
             focal_source: FocalSource::Given,
             principal: DVec2::new(310.0, 260.0),
+            bend: 0.0,
             axes: DMat3::IDENTITY,
         };
         let frustum = Frustum::of_camera(&camera, 640, 480, 1.0, 10.0).unwrap();
         let ray = frustum.ray(frustum.ndc(17, 400, 640, 480)).as_dvec3();
         let expected: DVec3 = camera.ray(DVec2::new(17.5, 400.5));
         assert!((ray - expected).length() < 1e-6);
+        // With a lens, too: the pixel's coordinates are those of an ideal lens.
+        let bent = Perspective { bend: -0.05 / (320.0f64 * 320.0 + 240.0 * 240.0), ..camera };
+        let frustum = Frustum::of_camera(&bent, 640, 480, 1.0, 10.0).unwrap();
+        let ray = frustum.ray(frustum.ndc(17, 400, 640, 480)).as_dvec3();
+        assert!((ray - bent.ray(DVec2::new(17.5, 400.5))).length() < 1e-6 && (ray - expected).length() > 1e-3);
         assert!(Frustum::of_camera(&Perspective { focal: 0.0, ..camera }, 640, 480, 1.0, 10.0).is_err());
         assert!(Frustum::of_camera(&Perspective { focal: f64::NAN, ..camera }, 640, 480, 1.0, 10.0).is_err());
     }

@@ -25,8 +25,8 @@
 //! The user's strokes grow over the smooth surfaces on which they lie ([`Surfaces`]). The grown surfaces are evidence
 //! for the layout, and tell which pixels lie off the plane of the strokes.
 //!
-//! Not modelled: lens distortion; room shapes other than a single box in the built-in layout (furniture, beams,
-//! two-part rooms).
+//! Not modelled: lens distortion in the normals of a caller's depth map (positions and the built-in layout follow the
+//! lens); room shapes other than a single box in the built-in layout (furniture, beams, two-part rooms).
 
 mod assemble;
 mod box_room;

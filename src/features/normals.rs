@@ -10,6 +10,7 @@ use super::frustum::Frustum;
 use super::plane_fit::{self, FitRow};
 use crate::error::Result;
 use crate::exec;
+use crate::geometry::Radial;
 use crate::image::Image;
 use crate::job::Job;
 use crate::simd::widest;
@@ -71,7 +72,9 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
     let (bands, mut normals) = (bands?, normals?);
     let fits_of = |y: usize| FitRow::of(&bands[y / BAND], y % BAND, width);
 
-    let origin = frustum.ray(frustum.ndc(0, 0, width, height));
+    // Neglect the distortion of the lens: within a window, it changes the derivatives by a few percent.
+    let ideal = Frustum { lens: Radial::NONE, ..*frustum };
+    let origin = ideal.ray(ideal.ndc(0, 0, width, height));
     let step_x = (frustum.right - frustum.left) / (frustum.near * width as f32);
     let step_y = (frustum.bottom - frustum.top) / (frustum.near * height as f32);
     let r = radius as isize;

@@ -17,6 +17,7 @@ fn camera(yaw: f64, pitch: f64, roll: f64, width: usize, height: usize) -> Persp
         focal: 0.8 * width as f64,
         focal_source: FocalSource::Given,
         principal: DVec2::new(width as f64 / 2.0, height as f64 / 2.0),
+        bend: 0.0,
         axes: to_room.transpose(),
     }
 }

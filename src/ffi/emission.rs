@@ -327,7 +327,7 @@ impl Exemplar {
             unwarped: unwarped.image(),
             light: light.image(),
             valid: valid.image(),
-            photo: self.photo.as_ref().map(|(photo, to_photo)| (photo.image(), *to_photo)),
+            photo: self.photo.as_ref().map(|(photo, to_photo)| (photo.image(), (*to_photo).into())),
         }
     }
 }
@@ -417,8 +417,9 @@ pub unsafe extern "C" fn luxfer_emission_set_exemplar(
 }
 
 /// Sets the photo, from which the texture takes its full detail, and the homography from unwarped pixels to photo
-/// pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). photo may be NULL: the detail then comes from the
-/// unwarped image only. Any thread.
+/// pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). If the rectification has undone a distortion, this is
+/// the photo that luxfer_rectify_undistort makes. photo may be NULL: the detail then comes from the unwarped image
+/// only. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_photo(
     emission: *mut luxfer_emission,

@@ -206,6 +206,7 @@ impl luxfer_pendants_params {
             focal: self.focal,
             focal_source: FocalSource::Given,
             principal: if x.is_nan() && y.is_nan() { centre } else { DVec2::new(x, y) },
+            bend: 0.0,
             axes: DMat3::from_cols_array_2d(&self.axes),
         })
     }

@@ -108,12 +108,17 @@ pub struct luxfer_rectify_params {
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
+    /// Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
+    /// distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN, the
+    /// default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least two
+    /// standard deviations, and the lines then meet better in vanishing points. 0: none is undone.
+    pub distortion: f64,
 }
 
-versioned!(luxfer_rectify_params, [80], {
+versioned!(luxfer_rectify_params, [80, 88], {
     let (view, unwarp) = (rectify::Params::default(), UnwarpParams::default());
     Self {
-        struct_size: 80,
+        struct_size: 88,
         detector: LUXFER_LINES_REGIONS,
         search: LUXFER_SEARCH_MANHATTAN,
         metric: LUXFER_METRIC_SEGMENT,
@@ -125,6 +130,7 @@ versioned!(luxfer_rectify_params, [80], {
         reserved: 0,
         max_magnification: unwarp.max_magnification,
         seed: view.seed,
+        distortion: f64::NAN,
     }
 });
 
@@ -163,6 +169,7 @@ impl luxfer_rectify_params {
             focal: (self.focal != 0.0).then_some(self.focal),
             expected_focal: None,
             principal: (!x.is_nan() || !y.is_nan()).then_some(DVec2::new(x, y)),
+            distortion: (!self.distortion.is_nan()).then_some(self.distortion),
             seed: self.seed,
         };
         let unwarp = UnwarpParams { axes, max_side: self.max_side as usize, max_magnification: self.max_magnification };
@@ -179,7 +186,7 @@ pub struct luxfer_rectify_report {
     /// Number of line segments found.
     pub segments: u32,
     /// Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate is 0
-    /// at infinity.
+    /// at infinity. If a distortion was undone, they lie in the photo that luxfer_rectify_undistort makes.
     pub vanishing_points: [[f64; 3]; 3],
     /// Standard deviation of the direction to each vanishing point in camera space, in radians.
     pub vanishing_errors: [f64; 3],
@@ -199,7 +206,8 @@ pub struct luxfer_rectify_report {
     /// Reserved; always 0.
     pub reserved: u32,
     /// Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp unwarps
-    /// other images of the photo's size, such as the confidence of the lights.
+    /// other images of the photo's size, such as the confidence of the lights. If a distortion was undone, it leads to
+    /// the pixels of the photo that luxfer_rectify_undistort makes; undistort the other images first.
     pub to_photo: [f64; 9],
     /// Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise.
     pub corners: [[f64; 2]; 4],
@@ -212,7 +220,7 @@ pub struct luxfer_rectify_report {
     pub aspect_confidence: f64,
     /// Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its centre;
     /// below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of straight
-    /// edges, and not corrected. NaN if the photo has too few lines.
+    /// edges. NaN if the photo has too few lines.
     pub distortion: f64,
     /// Standard deviation of the field distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
@@ -223,11 +231,14 @@ pub struct luxfer_rectify_report {
     pub squareness: [f64; 3],
     /// Standard deviations of the field squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
+    /// The distortion that was undone: the field distortion of luxfer_rectify_params if it is set, or else the measured
+    /// distortion or 0; 0 if none was undone.
+    pub undone: f64,
 }
 
-const REPORT_SIZE: usize = 8 + 72 + 24 + 16 + 24 + 72 + 8 + 72 + 64 + 32 + 32 + 48;
+const REPORT_SIZE: usize = 8 + 72 + 24 + 16 + 24 + 72 + 8 + 72 + 64 + 32 + 32 + 48 + 8;
 
-versioned!(luxfer_rectify_report, [REPORT_SIZE], {
+versioned!(luxfer_rectify_report, [REPORT_SIZE - 8, REPORT_SIZE], {
     Self {
         struct_size: REPORT_SIZE as u32,
         segments: 0,
@@ -249,6 +260,7 @@ versioned!(luxfer_rectify_report, [REPORT_SIZE], {
         distortion_error: f64::NAN,
         squareness: [f64::NAN; 3],
         squareness_errors: [f64::NAN; 3],
+        undone: 0.0,
     }
 });
 
@@ -275,12 +287,13 @@ impl luxfer_rectify_report {
             distortion_error: view.distortion.map_or(f64::NAN, |d| d.error),
             squareness: view.squareness.map(|s| s.map_or(f64::NAN, |s| s.angle)),
             squareness_errors: view.squareness.map(|s| s.map_or(f64::NAN, |s| s.error)),
+            undone: view.undone,
             ..Self::defaults()
         };
         let Some(unwarped) = unwarped else { return report };
         Self {
             is_unwarped: 1,
-            to_photo: unwarped.to_photo.0.transpose().to_cols_array(),
+            to_photo: unwarped.to_photo.homography.0.transpose().to_cols_array(),
             corners: unwarped.corners.map(|c| c.to_array()),
             corner_errors: unwarped.corner_error,
             pixel_size: unwarped.pixel_size,
@@ -416,6 +429,32 @@ pub unsafe extern "C" fn luxfer_rectify_get_image(
         };
         let output = stage.output()?;
         out.set(handle::give(Pixels::part(stage.context(), unwarped(&output)?.clone(), pick)));
+        Ok(())
+    })
+}
+
+/// Undoes the distortion of the lens in an image of the photo's size, such as the photo or a mask: makes the image that
+/// an ideal lens would have taken, with the same size and principal point. Pixels beyond the image are 0. If no
+/// distortion was undone, the new image equals the old one. The caller releases *undistorted. Any thread.
+/// LUXFER_NOT_READY before a job has succeeded; LUXFER_INVALID_ARGUMENT if the image has not the photo's size.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_rectify_undistort(
+    rectify: *mut luxfer_rectify,
+    image: *mut luxfer_image,
+    undistorted: *mut *mut luxfer_image,
+) -> luxfer_status {
+    enter(rectify, |stage| {
+        let out = Out::new(undistorted, "undistorted")?;
+        let context = stage.context();
+        let image = handle::borrow_in(context, image, "image")?;
+        let output = stage.output()?;
+        output.found_in.image().check_same_size("photo", image.image(), "image")?;
+        let lens = output.view.perspective.lens();
+        let source = image.image();
+        let made = Pixels::counted(context, source.width, source.height, source.channels, || {
+            context.quick.run(|| rectify::undistort(source, &lens, context.monitor().job()))
+        })?;
+        out.set(handle::give(made));
         Ok(())
     })
 }

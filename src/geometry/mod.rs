@@ -1,5 +1,5 @@
-//! Geometry of the plane and of space in `f64`: homographies, the pinhole camera and its vanishing points, polygons,
-//! small linear systems, robust statistics.
+//! Geometry of the plane and of space in `f64`: homographies, the pinhole camera and its vanishing points, radial
+//! distortion, polygons, small linear systems, robust statistics.
 //!
 //! Image points are in pixels, x right, y down, with the centre of the top-left pixel at (0.5, 0.5). Camera space is x
 //! right, y down, z forward. Homogeneous points are divided by their third coordinate only where necessary, because a
@@ -8,11 +8,15 @@
 pub mod homography;
 pub mod linear;
 pub mod perspective;
+pub mod photo_map;
 pub mod polygon;
+pub mod radial;
 pub mod robust;
 
 pub use homography::Homography;
 pub use perspective::{FocalSource, Perspective};
+pub use photo_map::PhotoMap;
+pub use radial::Radial;
 
 use glam::DVec2;
 

@@ -66,7 +66,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     named[HORIZONTAL_A] = rest.pop();
 
     let axes = orthonormal(named.map(|n| n.map(|k| (ray(&orthogonal[k]), orthogonal[k].error))));
-    let perspective = Perspective { focal, focal_source: source, principal, axes };
+    let perspective = Perspective { focal, focal_source: source, principal, bend: 0.0, axes };
     let vanishing_points = std::array::from_fn(|axis| match named[axis] {
         Some(k) => orthogonal[k].clone(),
         None => {

@@ -1,5 +1,9 @@
-//! Computes the footprints of a run of output pixels, for resampling through a homography: the position and extent of
-//! each pixel in the source.
+//! Computes the footprints of a run of output pixels, for resampling through a homography and the distortion of a lens:
+//! the position and extent of each pixel in the source.
+
+use crate::geometry::Radial;
+use crate::geometry::radial::magnification;
+use glam::DVec2;
 
 /// Number of neighbouring pixels of a row that are processed together.
 pub const RUN: usize = 128;
@@ -42,18 +46,52 @@ impl Footprints {
     };
 }
 
-/// Computes the footprints of a run of pixels that begins at column `first` of a row. `map` is the homography to the
-/// source, column by column; `front` is the sign of the third coordinate in front of the camera; `size` is the size of
-/// the source.
+/// The map from output pixels to the source image.
+pub struct Map {
+    /// The homography from output pixels to source pixels, column by column. If there is a lens, the pixels are those
+    /// that an ideal lens would show.
+    pub to_source: [f64; 9],
+    /// Sign of the third homogeneous coordinate of points in front of the camera. The centre of the output image is
+    /// assumed to be in front of the camera.
+    pub front: f64,
+    /// The distortion of the lens that took the source; `None` if it has none.
+    pub lens: Option<Radial>,
+    /// Size of the source in pixels.
+    pub size: [f64; 2],
+}
+
+/// Computes the footprints of a run of pixels that begins at column `first` of a row.
 #[inline(always)]
-pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usize, to: &mut Footprints) {
+pub fn locate(map: &Map, row: usize, first: usize, to: &mut Footprints) {
+    match map.lens {
+        None => locate_through(map, |x, y| (x, y), row, first, to),
+        Some(Radial { centre, bend }) => {
+            let shown = |x: f64, y: f64| {
+                let (x, y) = (x - centre.x, y - centre.y);
+                let factor = magnification(bend * (x * x + y * y));
+                (centre.x + x * factor, centre.y + y * factor)
+            };
+            locate_through(map, shown, row, first, to);
+        }
+    }
+}
+
+/// Computes the footprints as [`locate`] does. `shown` maps the pixels of an ideal lens to those of the source.
+#[inline(always)]
+fn locate_through(
+    Map { to_source: map, front, lens, size }: &Map,
+    shown: impl Fn(f64, f64) -> (f64, f64),
+    row: usize,
+    first: usize,
+    to: &mut Footprints,
+) {
     let y = row as f64 + 0.5;
     let (from_x, from_y, from_z) = (map[3] * y + map[6], map[4] * y + map[7], map[5] * y + map[8]);
     for i in 0..RUN {
         let x = first as f64 + (i as f64 + 0.5);
         let z = map[2] * x + from_z;
         let per_z = 1.0 / z;
-        let (qx, qy) = ((map[0] * x + from_x) * per_z, (map[1] * x + from_y) * per_z);
+        let (qx, qy) = shown((map[0] * x + from_x) * per_z, (map[1] * x + from_y) * per_z);
         let seen = (z * front > 0.0) & (qx >= 0.0) & (qy >= 0.0) & (qx <= size[0]) & (qy <= size[1]);
         to.is_seen[i] = seen;
         (to.x[i], to.y[i]) = if seen { (qx, qy) } else { (0.0, 0.0) };
@@ -68,6 +106,10 @@ pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usi
         let part = |v: f64| ((v * per_z) as f32).max(-MAX_DERIVATIVE).min(MAX_DERIVATIVE);
         let (a, b) = (part(map[0] - qx * map[2]), part(map[3] - qx * map[5]));
         let (c, d) = (part(map[1] - qy * map[2]), part(map[4] - qy * map[5]));
+        let ((a, b), (c, d)) = match lens {
+            None => ((a, b), (c, d)),
+            Some(lens) => bent(lens, shown(qx, qy), [a, b, c, d]),
+        };
         let (xx, xy, yy, determinant) = (a * a + b * b, a * c + b * d, c * c + d * d, a * d - b * c);
         let half = 0.5 * (xx - yy);
         let radius = (half * half + xy * xy).sqrt();
@@ -92,6 +134,16 @@ pub fn locate(map: &[f64; 9], front: f64, size: [f64; 2], row: usize, first: usi
     for (shape, to) in shapes.iter().zip([&mut to.width, &mut to.height, &mut to.shear, &mut to.squared_major_axis]) {
         to.chunks_exact_mut(SHARED).zip(shape).for_each(|(to, value)| to.fill(*value));
     }
+}
+
+/// Returns the rows of the Jacobian after the lens: `[a, b, c, d]` are those of the map to the pixels of an ideal lens,
+/// and `at` is the pixel of the source.
+#[inline(always)]
+fn bent(lens: &Radial, at: (f64, f64), [a, b, c, d]: [f32; 4]) -> ((f32, f32), (f32, f32)) {
+    let inverse = lens.derivative(DVec2::new(at.0, at.1)).inverse().as_mat2();
+    let (x, y) = (inverse.x_axis, inverse.y_axis);
+    let limit = |v: f32| v.max(-MAX_DERIVATIVE).min(MAX_DERIVATIVE);
+    ((limit(x.x * a + y.x * c), limit(x.x * b + y.x * d)), (limit(x.y * a + y.y * c), limit(x.y * b + y.y * d)))
 }
 
 /// Returns the shortest side, the greatest width and the greatest height of the visible footprints; `None` if no

@@ -27,8 +27,8 @@
 //!   direction does not show this.
 //! - Short segments share a small bias, whose cause is unknown.
 //!
-//! Not modelled: lens distortion (it is measured, see [`View::distortion`], but not corrected); pixel aspect ratios
-//! other than 1; rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
+//! Not modelled: lens distortion other than radial distortion with one coefficient; pixel aspect ratios other than 1;
+//! rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
 //! [`View::squareness`] reports their deviation from right angles.
 
 mod biweight;
@@ -63,15 +63,15 @@ mod warnings;
 pub use distortion::Distortion;
 pub use focal::FocalPrior;
 pub use params::{LineDetector, Metric, Params, Search, UnwarpParams};
-pub use resample::warp;
+pub use resample::{undistort, warp, warp_photo};
 pub use squareness::Squareness;
 pub use unwarp::unwarp;
 pub use vanishing::VanishingPoint;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::perspective::VERTICAL;
-use crate::geometry::{Homography, Perspective, Segment};
-use crate::image::{Image, pyramid};
+use crate::geometry::{Perspective, PhotoMap, Radial, Segment};
+use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -82,9 +82,11 @@ const DETECTION_SIDE: usize = 1600;
 /// The camera geometry that the lines of a photo imply.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// The segments, each with the index of the room axis along which it runs; `None` if it runs along no axis.
+    /// The segments in pixels of the photo, each with the index of the room axis along which it runs; `None` if it runs
+    /// along no axis.
     pub segments: Vec<(Segment, Option<usize>)>,
-    /// The vanishing point of each room axis, that is, of each column of `perspective.axes`.
+    /// The vanishing point of each room axis, that is, of each column of `perspective.axes`, in pixels of the photo
+    /// that an ideal lens would take.
     pub vanishing_points: [VanishingPoint; 3],
     pub perspective: Perspective,
     /// Standard deviation of the logarithm of the focal length; 0 if the caller gave the focal length.
@@ -95,6 +97,8 @@ pub struct View {
     /// Lens distortion, from the curvature of edges that should be straight; `None` if the photo has too few lines, or
     /// if only segments were given.
     pub distortion: Option<Distortion>,
+    /// The distortion that was undone, as [`Distortion::corner`]; 0 if none was.
+    pub undone: f64,
     /// The prior of the focal length: from the photo's metadata, or else the typical value for photos of rooms.
     pub expected_focal: FocalPrior,
 }
@@ -125,8 +129,51 @@ impl View {
 pub fn find_view(photo: &Image, params: &Params, job: Job) -> Result<View> {
     params.check()?;
     let Lines { segments, distortion } = find_lines(photo, params, job.part(0.0, 0.7))?;
-    let view = view_from_segments(&segments, photo.width, photo.height, params, job.part(0.7, 1.0))?;
+    let size = [photo.width, photo.height];
+    let given = given_lens(size, params)?;
+    let job = job.part(0.7, 1.0);
+    let view = match distortion.filter(|d| params.distortion.is_none() && d.is_worth_undoing()) {
+        None => view_through(&given, &segments, size, params, job)?,
+        Some(found) => {
+            let plain = view_through(&given, &segments, size, params, job.part(0.0, 0.5))?;
+            straightened(&plain, &found, &segments, size, params, job.part(0.5, 1.0))?.unwrap_or(plain)
+        }
+    };
     Ok(View { distortion, ..view })
+}
+
+/// A measured distortion is undone only if the errors of the vanishing points fall below this share of their errors
+/// without the correction. Edges that are curved themselves look like distortion, but no correction makes them meet
+/// better in vanishing points. [bench vp:lenses]
+const MAX_ERROR_SHARE: f64 = 0.95;
+
+/// Returns the view after the measured distortion is undone; `None` if the lines meet hardly better than in the view
+/// without the correction (`plain`), or if the map would fold over in a photo with a distant principal point.
+fn straightened(
+    plain: &View,
+    found: &Distortion,
+    segments: &[Segment],
+    size: [usize; 2],
+    params: &Params,
+    job: Job,
+) -> Result<Option<View>> {
+    let Ok(lens) = given_lens(size, &Params { distortion: Some(found.corner), ..params.clone() }) else {
+        return Ok(None);
+    };
+    let error = |view: &View| view.vanishing_points.iter().map(|v| v.error * v.error).sum::<f64>().sqrt();
+    match view_through(&lens, segments, size, params, job) {
+        Ok(view) => Ok(Some(view).filter(|view| error(view) < MAX_ERROR_SHARE * error(plain))),
+        Err(e) if e.kind == ErrorKind::Degenerate => Ok(None),
+        Err(e) => Err(e),
+    }
+}
+
+/// Returns the lens with the given distortion; one without distortion if none is given.
+fn given_lens([width, height]: [usize; 2], params: &Params) -> Result<Radial> {
+    let size = DVec2::new(width as f64, height as f64);
+    params
+        .distortion
+        .map_or(Ok(Radial::NONE), |corner| Radial::new(corner, params.principal.unwrap_or(0.5 * size), size))
 }
 
 /// Finds the straight edges of a photo, in pixels of the photo.
@@ -176,7 +223,7 @@ fn detect_lines(photo: &Image, centre: DVec2, params: &Params, job: Job) -> Resu
 }
 
 /// Finds the vanishing points and the camera from segments that the caller detected, as [`find_view`] does from a
-/// photo. The `distortion` of the result is `None`.
+/// photo. The `distortion` of the result is `None`; only a distortion given in `params` is undone.
 pub fn view_from_segments(
     segments: &[Segment],
     width: usize,
@@ -187,16 +234,29 @@ pub fn view_from_segments(
     if width == 0 || height == 0 {
         return Err(Error::argument(format!("image size is {width} x {height}; both must be at least 1")));
     }
-    let found = vanishing::from_segments(segments, width, height, 3, params, job)?;
+    view_through(&given_lens([width, height], params)?, segments, [width, height], params, job)
+}
+
+/// Finds the vanishing points and the camera from segments of a photo that was taken through `lens`.
+fn view_through(
+    lens: &Radial,
+    segments: &[Segment],
+    [width, height]: [usize; 2],
+    params: &Params,
+    job: Job,
+) -> Result<View> {
+    let straight = try_collect(segments.iter().map(|s| Segment { a: lens.ideal(s.a), b: lens.ideal(s.b) }))?;
+    let found = vanishing::from_segments(&straight, width, height, 3, params, job)?;
     let oriented = camera::orient(&found, width, height, params);
     let axis = |member: &Option<usize>| member.and_then(|k| oriented.axis_of[k]);
     Ok(View {
         segments: segments.iter().copied().zip(found.members.iter().map(axis)).collect(),
         vanishing_points: oriented.vanishing_points,
-        perspective: oriented.perspective,
+        perspective: Perspective { bend: lens.bend, ..oriented.perspective },
         focal_spread: oriented.focal_spread,
         squareness: oriented.squareness,
         distortion: None,
+        undone: lens.bend * 0.25 * DVec2::new(width as f64, height as f64).length_squared(),
         expected_focal: oriented.expected,
     })
 }
@@ -210,7 +270,7 @@ pub struct Unwarped {
     /// One channel: 1 where the mask marks the plane and the photo is finite, else 0.
     pub valid: Image,
     /// Maps unwarped pixels to photo pixels.
-    pub to_photo: Homography,
+    pub to_photo: PhotoMap,
     /// Size of an unwarped pixel divided by the distance between camera and plane: multiply by that distance to get
     /// metres.
     pub pixel_size: f64,

@@ -1,6 +1,7 @@
 //! The settings of rectification.
 
 use crate::error::{Result, check_range};
+use crate::geometry::radial;
 use glam::DVec2;
 
 /// How lines are found.
@@ -51,6 +52,10 @@ pub struct Params {
     /// In cropped photos and photos taken with a shifted lens, the principal point lies elsewhere, possibly outside
     /// the image.
     pub principal: Option<DVec2>,
+    /// Radial distortion of the lens that is undone, as [`Distortion::corner`](super::Distortion::corner), in
+    /// `[-1, 0.2]`; 0 undoes none. If absent, the distortion is measured, and undone if it is
+    /// [worth undoing](super::Distortion::is_worth_undoing) and the lines then meet better in vanishing points.
+    pub distortion: Option<f64>,
     pub seed: u64,
 }
 
@@ -64,6 +69,7 @@ impl Default for Params {
             focal: None,
             expected_focal: None,
             principal: None,
+            distortion: None,
             seed: 1,
         }
     }
@@ -93,6 +99,9 @@ impl Params {
         if let Some(principal) = self.principal {
             check_range("principal.x", principal.x, -1e9, 1e9)?;
             check_range("principal.y", principal.y, -1e9, 1e9)?;
+        }
+        if let Some(distortion) = self.distortion {
+            check_range("distortion", distortion, radial::MIN_CORNER, radial::MAX_CORNER)?;
         }
         Ok(())
     }

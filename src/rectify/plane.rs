@@ -28,8 +28,9 @@ pub struct Plane {
 }
 
 impl Plane {
-    /// Maps plane coordinates to homogeneous pixels; the third coordinate is positive in front of the camera.
-    pub fn to_photo(&self) -> Homography {
+    /// Maps plane coordinates to homogeneous pixels of the photo that an ideal lens would take. The third coordinate is
+    /// positive in front of the camera.
+    pub fn homography(&self) -> Homography {
         Homography(self.perspective.intrinsics() * DMat3::from_cols(self.right, self.down, self.normal))
     }
 
@@ -42,10 +43,12 @@ impl Plane {
     }
 
     /// Side, in plane units, of a square with the same area as the patch of the plane that a pixel covers. This is
-    /// `√det J`, where J is the Jacobian from pixels to plane coordinates, and det J = 1 / (f² (n · ray)³). `ray` has z
-    /// = 1, n is the normal of the plane, and f the focal length in pixels.
+    /// `√det J`, where J is the Jacobian from pixels to plane coordinates. For an ideal lens, det J is
+    /// 1 / (f² (n · ray)³). `ray` has z = 1, n is the normal of the plane, and f the focal length in pixels.
     pub fn pixel_side(&self, pixel: DVec2) -> f64 {
-        self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal
+        let side = self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal;
+        let lens = self.perspective.lens();
+        if lens.is_none() { side } else { side * lens.derivative(pixel).determinant().sqrt() }
     }
 }
 
@@ -95,7 +98,7 @@ fn facing(perspective: &Perspective, [i, j]: [usize; 2], pixels: &[DVec2]) -> Pl
     let ahead = pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0).count();
     let normal = if 2 * ahead >= pixels.len() { normal } else { -normal };
     let seen = || pixels.iter().filter(|&&p| normal.dot(perspective.ray(p)) > 0.0);
-    let centre = seen().sum::<DVec2>() / seen().count().max(1) as f64;
+    let centre = perspective.lens().ideal(seen().sum::<DVec2>() / seen().count().max(1) as f64);
     // The direction in which an axis runs in the photo at the centre of the mask.
     let runs = |axis: usize| {
         let v = perspective.vanishing_point(axis);

@@ -46,15 +46,15 @@ pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification:
     // Score each cell: +1 if the mask marks it and its magnification is allowed, else `-HOLE`. Exclude cells behind
     // the camera by a large negative score.
     let cell = (high - low) / GRID as f64;
-    let to_photo = plane.to_photo();
+    let (homography, lens) = (plane.homography(), plane.perspective.lens());
     let mut gain = vec![[0.0f64; GRID]; GRID];
     for (y, row) in gain.iter_mut().enumerate() {
         for (x, gain) in row.iter_mut().enumerate() {
             let corner =
-                |dx: f64, dy: f64| to_photo.apply_homogeneous(low + cell * DVec2::new(x as f64 + dx, y as f64 + dy));
+                |dx: f64, dy: f64| homography.apply_homogeneous(low + cell * DVec2::new(x as f64 + dx, y as f64 + dy));
             let in_front = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].iter().all(|c| corner(c.0, c.1).z > 1e-6);
             let centre = corner(0.5, 0.5);
-            let photo = centre.truncate() / centre.z;
+            let photo = lens.shown(centre.truncate() / centre.z);
             let shows = in_front && marks(mask, photo) && plane.pixel_side(photo) <= max_pixel_side;
             *gain = if shows {
                 1.0

@@ -1,21 +1,21 @@
-//! Resampling through a homography: bicubic interpolation (Catmull-Rom) where the source is magnified, the mean over
-//! the pixel's footprint where it is minified.
+//! Resampling through a homography, and through the distortion of a lens: bicubic interpolation (Catmull-Rom) where the
+//! source is magnified, the mean over the pixel's footprint where it is minified.
 //!
 //! The parallelogram that a pixel covers is replaced by the sheared rectangle with the same second moments (see
 //! [`Footprints`]). Rectangles large in both directions are sampled from a coarser level of a pyramid. Rectangles that
 //! are still longer than the 4 × 4 samples that a filter reads (its taps) are divided into equal parts, as in Feline
 //! (McCormack et al. 1999).
 
-use super::footprint::{Footprints, RUN, extent, locate};
+use super::footprint::{Footprints, Map, RUN, extent, locate};
 use super::gather::{store, sum};
 use super::taps::{MAX_SIDE, Part, Taps, weigh};
 use crate::error::{Error, Result};
 use crate::exec;
-use crate::geometry::Homography;
+use crate::geometry::{Homography, PhotoMap, Radial};
 use crate::image::{Image, pyramid};
 use crate::job::Job;
 use crate::simd::{Level, widest};
-use glam::{DVec2, Vec4};
+use glam::{DMat3, DVec2, Vec4};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Maximum number of parts of a footprint. Footprints that need more parts use a coarser pyramid level. On the
@@ -30,18 +30,35 @@ const BAND: usize = 8;
 /// that extend past the source's border use the border's values. Pixels whose position lies outside the source or
 /// behind the camera are 0. A pixel is not finite if one of the samples it depends on is not finite.
 pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize, job: Job) -> Result<Image> {
-    if !to_source.0.is_finite() {
+    warp_photo(source, &PhotoMap::from(*to_source), width, height, job)
+}
+
+/// Returns the photo that an ideal lens would have taken, with the same size and principal point. Pixels that the photo
+/// does not show are 0. The same photo, to the bit, if the lens has no distortion.
+pub fn undistort(photo: &Image, lens: &Radial, job: Job) -> Result<Image> {
+    if lens.is_none() {
+        return photo.try_clone();
+    }
+    let map = PhotoMap { homography: Homography(DMat3::IDENTITY), lens: *lens };
+    warp_photo(photo, &map, photo.width, photo.height, job)
+}
+
+/// Resamples a photo, as [`warp`] does, through a homography and the distortion of the lens at once.
+pub fn warp_photo(source: &Image, to_source: &PhotoMap, width: usize, height: usize, job: Job) -> Result<Image> {
+    let PhotoMap { homography, lens } = to_source;
+    if !(homography.0.is_finite() && lens.centre.is_finite() && lens.bend.is_finite()) {
         return Err(Error::argument("the homography has entries that are not finite"));
     }
     let mut out = Image::new(width, height, source.channels)?;
     let map = Map {
-        to_source: to_source.0.to_cols_array(),
-        front: to_source.apply_homogeneous(DVec2::new(width as f64, height as f64) / 2.0).z.signum(),
+        to_source: homography.0.to_cols_array(),
+        front: homography.apply_homogeneous(DVec2::new(width as f64, height as f64) / 2.0).z.signum(),
+        lens: (!lens.is_none()).then_some(*lens),
         size: [source.width as f64, source.height as f64],
-        width,
     };
+    let target = Target { map, width };
 
-    let wanted = exec::map(height.div_ceil(BAND), job.part(0.0, 0.05), |band| highest_level(&map, band * BAND))?;
+    let wanted = exec::map(height.div_ceil(BAND), job.part(0.0, 0.05), |band| highest_level(&target, band * BAND))?;
     let wanted = wanted.into_iter().max().unwrap_or(0);
     let smaller = pyramid::halvings(source, wanted, job.part(0.05, 0.2))?;
     let levels: Vec<&Image> = std::iter::once(source).chain(&smaller).collect();
@@ -50,32 +67,26 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
     let job = job.part(0.2, 1.0);
     let done = AtomicUsize::new(0);
     exec::for_runs(&mut out.data, BAND * row_len, job, |first, band| {
-        fill(Level::widest(), &levels, &map, first / row_len, band);
+        fill(Level::widest(), &levels, &target, first / row_len, band);
         let rows = done.fetch_add(BAND, Ordering::Relaxed) + BAND;
         job.report(rows.min(height) as f64 / height as f64);
     })?;
     Ok(out)
 }
 
-/// The map from output pixels to the source image.
-struct Map {
-    /// The homography from output pixels to source pixels, column by column.
-    to_source: [f64; 9],
-    /// Sign of the third homogeneous coordinate of points in front of the camera. The centre of the output image is
-    /// assumed to be in front of the camera.
-    front: f64,
-    /// Size of the source (`size`), and width of the output image (`width`), in pixels.
-    size: [f64; 2],
+/// The map from output pixels to the source image, and the width of the output image in pixels.
+struct Target {
+    map: Map,
     width: usize,
 }
 
 widest! {
     /// Returns the coarsest pyramid level that a row needs.
-    fn highest_level(map: &Map, row: usize) -> usize {
+    fn highest_level(target: &Target, row: usize) -> usize {
         let mut footprints = Footprints::EMPTY;
         let mut highest = 0;
-        for x in (0..map.width).step_by(RUN) {
-            locate(&map.to_source, map.front, map.size, row, x, &mut footprints);
+        for x in (0..target.width).step_by(RUN) {
+            locate(&target.map, row, x, &mut footprints);
             highest = highest.max(choose_sampling(&footprints, usize::MAX).map_or(0, |p| p.level));
         }
         highest
@@ -84,14 +95,14 @@ widest! {
 
 widest! {
     /// Computes the output rows from `first_row` on.
-    fn fill(instructions: Level, levels: &[&Image], map: &Map, first_row: usize, rows: &mut [f32]) {
+    fn fill(instructions: Level, levels: &[&Image], target: &Target, first_row: usize, rows: &mut [f32]) {
         let channels = levels[0].channels;
         let (mut footprints, mut taps, mut sums) = (Footprints::EMPTY, Taps::EMPTY, [Vec4::ZERO; RUN]);
-        for (y, row) in rows.chunks_exact_mut(map.width * channels).enumerate() {
-            for x in (0..map.width).step_by(RUN) {
-                let count = RUN.min(map.width - x);
+        for (y, row) in rows.chunks_exact_mut(target.width * channels).enumerate() {
+            for x in (0..target.width).step_by(RUN) {
+                let count = RUN.min(target.width - x);
                 let out = &mut row[x * channels..(x + count) * channels];
-                locate(&map.to_source, map.front, map.size, first_row + y, x, &mut footprints);
+                locate(&target.map, first_row + y, x, &mut footprints);
                 footprints.is_seen[count..].fill(false);
                 let sampling = choose_sampling(&footprints, levels.len());
                 let Some(Sampling { level, parts: [across, down] }) = sampling else { continue };

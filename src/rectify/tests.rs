@@ -5,10 +5,12 @@ use super::vanishing::from_segments;
 use super::*;
 use crate::error::ErrorKind;
 use crate::exec::Pool;
-use crate::geometry::FocalSource;
+use crate::geometry::{FocalSource, Homography};
 use crate::job::Monitor;
 use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
+
+mod lens;
 
 const SIZE: (usize, usize) = (800, 600);
 
@@ -18,6 +20,7 @@ fn camera(yaw: f64, pitch: f64, roll: f64, focal: f64) -> Perspective {
         focal,
         focal_source: FocalSource::Given,
         principal: DVec2::new(SIZE.0 as f64, SIZE.1 as f64) / 2.0,
+        bend: 0.0,
         axes: DMat3::from_quat(turn),
     }
 }

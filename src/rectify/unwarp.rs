@@ -6,7 +6,7 @@ use super::plane::{Plane, choose, marked_pixels};
 use super::{UnwarpParams, Unwarped, View, quad, resample};
 use crate::error::Result;
 use crate::geometry::linear::symmetric_eigen;
-use crate::geometry::{Homography, Perspective};
+use crate::geometry::{Homography, Perspective, PhotoMap};
 use crate::image::Image;
 use crate::job::Job;
 use glam::{DMat3, DQuat, DVec2, DVec3};
@@ -30,10 +30,11 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     // Keep pixels square; distribute the rounding of the size over opposite sides.
     let spare = size - DVec2::new(width as f64, height as f64) * pixel_size;
     let to_plane = DMat3::from_translation(rectangle.low + spare / 2.0) * DMat3::from_scale(DVec2::splat(pixel_size));
-    let to_photo = Homography(plane.to_photo().0 * to_plane).rescaled();
+    let homography = Homography(plane.homography().0 * to_plane).rescaled();
+    let to_photo = PhotoMap { homography, lens: view.perspective.lens() };
 
-    let mut image = resample::warp(&photo.to_rgb()?, &to_photo, width, height, job.part(0.1, 0.8))?;
-    let mut valid = resample::warp(&mask.channel(0)?, &to_photo, width, height, job.part(0.8, 1.0))?;
+    let mut image = resample::warp_photo(&photo.to_rgb()?, &to_photo, width, height, job.part(0.1, 0.8))?;
+    let mut valid = resample::warp_photo(&mask.channel(0)?, &to_photo, width, height, job.part(0.8, 1.0))?;
     for (pixel, valid) in image.data.chunks_exact_mut(3).zip(&mut valid.data) {
         // Mark pixels that are not finite as invalid, and show them black.
         *valid = if *valid >= 0.5 && pixel.iter().all(|v| v.is_finite()) { 1.0 } else { 0.0 };
@@ -43,15 +44,15 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     }
 
     let (w, h) = (width as f64, height as f64);
-    let corners = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)].map(|c| to_photo.apply(c));
-    let uncertainty = uncertainty(&plane, view, corners, pixel_size);
+    let corners = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
+    let uncertainty = uncertainty(&plane, view, corners.map(|c| homography.apply(c)), pixel_size);
     job.report(1.0);
     Ok(Unwarped {
         image,
         valid,
         to_photo,
         pixel_size,
-        corners,
+        corners: corners.map(|c| to_photo.apply(c)),
         aspect_confidence: uncertainty.aspect_confidence,
         corner_error: uncertainty.corner_error,
     })
@@ -64,7 +65,7 @@ struct Uncertainty {
 
 /// Propagates the covariances of the vanishing points and the uncertainty of the focal length to the rectified
 /// corners, to first order: perturbs each input slightly and re-estimates the camera (focal length and axes) from the
-/// perturbed inputs.
+/// perturbed inputs. `corners` are pixels of the photo that an ideal lens would take, as in [`rectified`].
 fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64) -> Uncertainty {
     let camera = &view.perspective;
     let expected = view.expected_focal;
@@ -123,7 +124,7 @@ fn deviations(covariance: &DMat3) -> [DVec3; 3] {
 /// Returns the plane coordinates of four photo points relative to their mean. A common translation of the corners does
 /// not count as an error, because the origin of the plane's coordinates is arbitrary.
 fn rectified(plane: &Plane, corners: [DVec2; 4]) -> [DVec2; 4] {
-    let inverse = plane.to_photo().inverse();
+    let inverse = plane.homography().inverse();
     let at = corners.map(|c| inverse.apply(c));
     let mean = at.iter().sum::<DVec2>() / 4.0;
     at.map(|p| p - mean)

@@ -13,18 +13,18 @@ use std::f64::consts::FRAC_1_SQRT_2;
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
 /// A room axis whose standard deviation is above this, in radians, raises a warning. [judged on 38 photos]
 pub const MAX_DIRECTION_ERROR: f64 = 0.035;
-/// A lens raises a warning if it displaces the photo's corners by more than this share of their distance from the
-/// centre. [judged on 38 photos]
+/// A lens whose distortion is not undone raises a warning if it displaces the photo's corners by more than this share
+/// of their distance from the centre. [judged on 38 photos]
 const MAX_DISTORTION: f64 = 0.02;
+/// A measured value counts as different from 0 if its magnitude exceeds this number of its standard deviations.
+/// [convention]
+const SIGNIFICANT: f64 = 3.0;
 /// An angle between room axes raises a warning if it deviates from a right angle by more than this, in radians.
 /// [judged on 38 photos]
 const MAX_SKEW: f64 = 0.035;
 /// An angle that deviates by more than this, in radians, raises no warning. Rooms are not so oblique: one of the two
 /// vanishing points must be wrong. [judged on 28 photos]
 const MAX_PLAUSIBLE_SKEW: f64 = 0.35;
-/// A measured value counts as different from 0 if its magnitude exceeds this number of its standard deviations.
-/// [convention]
-const SIGNIFICANT: f64 = 3.0;
 
 /// Above this magnification of the photo, the position of a lamp's edge is uncertain. [judged on 38 photos]
 const SHARP_MAGNIFICATION: f64 = 4.0;
@@ -71,14 +71,14 @@ impl View {
     }
 
     fn distorted(&self) -> Option<Warning> {
-        let found = self.distortion.filter(|d| d.corner.abs() > SIGNIFICANT * d.error)?;
+        let found = self.distortion.filter(|d| d.corner.abs() > SIGNIFICANT * d.error && self.undone == 0.0)?;
         let kind = if found.corner < 0.0 { "barrel" } else { "pincushion" };
         Warning::above(
             Code::LensDistortion,
             found.corner.abs(),
             MAX_DISTORTION,
             || format!("the lens bends straight lines: {} of {kind} distortion", percent(found.corner.abs())),
-            "undo the distortion of the lens in a photo editor first",
+            "set distortion of the rectification to the distortion of the lens, unless the edges in the photo are curved",
         )
     }
 
@@ -124,13 +124,15 @@ impl Unwarped {
     }
 
     fn footprint(&self, pixel: DVec2) -> Footprint {
-        let [right, down] = [0, 1].map(|k| self.to_photo.0.col(k));
-        let seen = self.to_photo.apply_homogeneous(pixel);
-        let place = seen.truncate() / seen.z;
-        // Compute the Jacobian of the map, and the axes of the ellipse onto which the map takes a pixel.
+        let [right, down] = [0, 1].map(|k| self.to_photo.homography.0.col(k));
+        let seen = self.to_photo.homography.apply_homogeneous(pixel);
+        let ideal = seen.truncate() / seen.z;
+        let place = self.to_photo.lens.shown(ideal);
+        // Compute the Jacobian of the homography, and the axes of the ellipse onto which it takes a pixel. The
+        // distortion of the lens hardly changes them.
         let jacobian = DMat2::from_cols(
-            (right.truncate() - place * right.z) / seen.z,
-            (down.truncate() - place * down.z) / seen.z,
+            (right.truncate() - ideal * right.z) / seen.z,
+            (down.truncate() - ideal * down.z) / seen.z,
         );
         let area = jacobian.determinant().abs();
         let trace = jacobian.x_axis.length_squared() + jacobian.y_axis.length_squared();

@@ -210,10 +210,10 @@ impl Transfer {
         let lights = need(&self.results.lights, "run stage Lights")?;
         let unwarped = need(&self.results.unwarped, "run stage Unwarp")?;
 
-        // Unwarp the smoothed confidence of the lights with the same homography as the photo.
+        // Unwarp the smoothed confidence of the lights with the same map as the photo.
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
-        let light = rectify::warp(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.08))?;
+        let light = rectify::warp_photo(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.08))?;
         let light =
             emission::complete_lights(&unwarped.image, light, &unwarped.valid, unwarped.to_photo, job.part(0.08, 0.1))?;
         let input = emission::Input {

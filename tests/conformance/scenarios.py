@@ -166,6 +166,7 @@ def photo() -> Scenario:
     s.call("rectify_set_mask", rectify, even)
     s.run("rectify_start", rectify, struct("rectify_params"))
     s.make("rectify_get_image", rectify, 0)
+    s.make("rectify_undistort", rectify, photo)
     s.call("rectify_get_report", rectify, *report("rectify_report"))
     s.make("get_warnings", rectify)
     features = s.make("features_create", s.context)

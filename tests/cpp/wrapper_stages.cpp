@@ -92,9 +92,10 @@ void lighting_transfer(const Context &context) {
     const auto emission = copied(luxfer::Emission::create(context));
     const Image unwarped = rectify.image(LUXFER_RECTIFY_UNWARPED);
     const luxfer::ImageSize extent = unwarped.size();
-    const Image light = lights.image(LUXFER_SEGMENT_CONFIDENCE).warp(view.to_photo, extent.width, extent.height);
+    const Image sure = rectify.undistort(lights.image(LUXFER_SEGMENT_CONFIDENCE));
+    const Image light = sure.warp(view.to_photo, extent.width, extent.height);
     emission.set_exemplar(unwarped, light, rectify.image(LUXFER_RECTIFY_VALID));
-    emission.set_photo(photo, view.to_photo);
+    emission.set_photo(rectify.undistort(photo), view.to_photo);
     luxfer::EmissionParams texture;
     texture.width = 96;
     texture.height = 64;

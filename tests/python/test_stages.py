@@ -89,9 +89,11 @@ class Transfer(Case):
         view.set_mask(plane.image())
         view.run(max_side=256)
         unwarped, to_photo = view.image("unwarped"), view.report.to_photo
-        light = lights.image("confidence").warp(to_photo, *unwarped.size[:2])
+        self.assertEqual(view.report.undone, 0)
+        np.testing.assert_array_equal(view.undistort(photo).numpy(), photo.numpy())
+        light = view.undistort(lights.image("confidence")).warp(to_photo, *unwarped.size[:2])
         emission = luxfer.Emission(context(), unwarped, light, view.image("valid"))
-        emission.set_photo(photo, to_photo)
+        emission.set_photo(view.undistort(photo), to_photo)
         emission.run(width=128, height=96)
         lamps = emission.luminaires
         self.assertEqual(len(lamps), emission.report.luminaires)

@@ -34,6 +34,9 @@ public:
     /// Gets an image of the results; `kind` is a LUXFER_RECTIFY_ value.
     Result<Image> image(luxfer_rectify_image kind) const { return make<Image>(luxfer_rectify_get_image, kind); }
 
+    /// Undoes the distortion of the lens in an image of the photo's size. See luxfer_rectify_undistort.
+    Result<Image> undistort(const Image &image) const { return make<Image>(luxfer_rectify_undistort, image.get()); }
+
     Result<luxfer_rectify_report> report() const { return value<luxfer_rectify_report>(luxfer_rectify_get_report); }
 
     /// Reasons to doubt the camera, and the plane if it has been unwarped.

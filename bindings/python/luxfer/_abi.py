@@ -811,6 +811,7 @@ class luxfer_rectify_params(Structure):
         ("reserved", c_uint32),
         ("max_magnification", c_double),
         ("seed", c_uint64),
+        ("distortion", c_double),
     ]
     enumerations: dict[str, type] = {"detector": types.Lines, "search": types.Search, "metric": types.Metric}
     struct_type = LUXFER_STRUCT_RECTIFY_PARAMS
@@ -840,6 +841,7 @@ class luxfer_rectify_report(Structure):
         ("distortion_error", c_double),
         ("squareness", c_double * 3),
         ("squareness_errors", c_double * 3),
+        ("undone", c_double),
     ]
     enumerations: dict[str, type] = {"focal_source": types.FocalSource}
     result = types.RectifyReport
@@ -1695,6 +1697,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_rectify_set_mask": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("mask", POINTER(luxfer_image))]),
     "luxfer_rectify_start": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("params", POINTER(luxfer_rectify_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_rectify_get_image": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_rectify_undistort": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("image", POINTER(luxfer_image)), ("undistorted", POINTER(POINTER(luxfer_image)))]),
     "luxfer_rectify_get_report": (c_int32, [("rectify", POINTER(luxfer_rectify)), ("report", POINTER(luxfer_rectify_report)), ("size", c_size_t)]),
     "luxfer_features_create": (c_int32, [("context", POINTER(luxfer_context)), ("features", POINTER(POINTER(luxfer_features)))]),
     "luxfer_features_set_photo": (c_int32, [("features", POINTER(luxfer_features)), ("photo", POINTER(luxfer_image))]),

@@ -1588,6 +1588,11 @@ class RectifyParams(TypedDict, total=False):
     that of the nearest part by more than this factor are cut off."""
     seed: int
     """Seed of the search; default 1."""
+    distortion: float
+    """Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
+    distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN,
+    the default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least
+    two standard deviations, and the lines then meet better in vanishing points. 0: none is undone."""
 
 
 @dataclass(frozen=True)
@@ -1598,7 +1603,7 @@ class RectifyReport:
     """Number of line segments found."""
     vanishing_points: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
     """Vanishing points of the room axes, in homogeneous pixel coordinates of unit length; the third coordinate
-    is 0 at infinity."""
+    is 0 at infinity. If a distortion was undone, they lie in the photo that luxfer_rectify_undistort makes."""
     vanishing_errors: tuple[float, float, float]
     """Standard deviation of the direction to each vanishing point in camera space, in radians."""
     vanishing_support: tuple[int, int, int]
@@ -1616,7 +1621,9 @@ class RectifyReport:
     """1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0."""
     to_photo: tuple[float, ...]
     """Homography from unwarped pixels to photo pixels: a 3 x 3 matrix, row by row. With it, luxfer_image_warp
-    unwarps other images of the photo's size, such as the confidence of the lights."""
+    unwarps other images of the photo's size, such as the confidence of the lights. If a distortion was undone,
+    it leads to the pixels of the photo that luxfer_rectify_undistort makes; undistort the other images
+    first."""
     corners: tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
     """Corners of the unwarped rectangle in the photo, x and y in pixels: top left, then clockwise."""
     corner_errors: tuple[float, float, float, float]
@@ -1629,7 +1636,7 @@ class RectifyReport:
     distortion: float
     """Lens distortion: the outward shift of the corners of the photo, as a share of their distance from its
     centre; below 0 for barrel distortion, which wide-angle lenses have. It is estimated from the curvature of
-    straight edges, and not corrected. NaN if the photo has too few lines."""
+    straight edges. NaN if the photo has too few lines."""
     distortion_error: float
     """Standard deviation of the field distortion; NaN if distortion is NaN."""
     squareness: tuple[float, float, float]
@@ -1639,6 +1646,9 @@ class RectifyReport:
     vectors of the field axes are always orthogonal."""
     squareness_errors: tuple[float, float, float]
     """Standard deviations of the field squareness; NaN where squareness is NaN."""
+    undone: float
+    """The distortion that was undone: the field distortion of RectifyParams if it is set, or else the measured
+    distortion or 0; 0 if none was undone."""
 
 
 class FeaturesParams(TypedDict, total=False):

@@ -7,6 +7,7 @@ export interface View {
   focal: number;
   unwarped: [number, number] | null;
   to_photo: number[] | null; // from unwarped pixels to the photo's, row by row
+  lens: [number, number, number]; // principal point, and radial distortion per square pixel
   pixel_size: number; // of an unwarped pixel, as a share of the camera's distance from the plane
   dragged: boolean; // the camera is that of the dragged grid
   distance: number | null; // of the camera from the plane, in metres
@@ -76,18 +77,37 @@ export function drawGrid(context: CanvasRenderingContext2D, view: View, scale: n
   const metre = view.distance ? 1 / (view.pixel_size * view.distance) : Math.max(width, height) / 8;
   const step = metre * Math.max(1, Math.ceil(Math.max(width, height) / metre / 40));
   const path = new Path2D();
-  for (let x = 0; x <= width; x += step) line(path, view.to_photo, [x, 0], [x, height]);
-  for (let y = 0; y <= height; y += step) line(path, view.to_photo, [0, y], [width, y]);
-  line(path, view.to_photo, [width, 0], [width, height]);
-  line(path, view.to_photo, [0, height], [width, height]);
+  for (let x = 0; x <= width; x += step) line(path, view, [x, 0], [x, height]);
+  for (let y = 0; y <= height; y += step) line(path, view, [0, y], [width, y]);
+  line(path, view, [width, 0], [width, height]);
+  line(path, view, [0, height], [width, height]);
   outlined(context, path, "#ffffff", [], scale);
 }
 
-function line(path: Path2D, h: number[], from: [number, number], to: [number, number]): void {
-  const project = ([x, y]: [number, number]): [number, number] => {
-    const w = h[6] * x + h[7] * y + h[8];
-    return [(h[0] * x + h[1] * y + h[2]) / w, (h[3] * x + h[4] * y + h[5]) / w];
-  };
-  path.moveTo(...project(from));
-  path.lineTo(...project(to));
+/** Pieces of a line of the grid, which a lens with distortion bends. */
+const PIECES = 12;
+
+function line(path: Path2D, view: View, from: [number, number], to: [number, number]): void {
+  const pieces = view.lens[2] ? PIECES : 1;
+  for (let i = 0; i <= pieces; i++) {
+    const t = i / pieces;
+    const at = inPhoto(view, [from[0] + (to[0] - from[0]) * t, from[1] + (to[1] - from[1]) * t]);
+    if (i) path.lineTo(...at);
+    else path.moveTo(...at);
+  }
+}
+
+/** The pixel of the photo that shows a point of the unwarped plane: a homography, then the distortion of the lens. */
+export function inPhoto(view: View, [x, y]: [number, number]): [number, number] {
+  const h = view.to_photo!;
+  const w = h[6] * x + h[7] * y + h[8];
+  const ideal: [number, number] = [(h[0] * x + h[1] * y + h[2]) / w, (h[3] * x + h[4] * y + h[5]) / w];
+  const [cx, cy, bend] = view.lens;
+  if (!bend) return ideal;
+  // Newton's method for the root of s (1 - t s²) = 1.
+  const [dx, dy] = [ideal[0] - cx, ideal[1] - cy];
+  const t = Math.min(bend * (dx * dx + dy * dy), 4 / 27);
+  let s = t < 0 ? 1 / (1 - t) : 1 + t + 3 * t * t;
+  for (let i = 0; i < 7; i++) s -= (s * (1 - t * s * s) - 1) / (1 - 3 * t * s * s);
+  return [cx + dx * s, cy + dy * s];
 }

@@ -1,6 +1,6 @@
 // The grid of the plane, dragged by its corners and sides where the lines of the photo are wrong.
 
-import { drawVanishing, outlined, type View } from "./geometry";
+import { drawVanishing, inPhoto, outlined, type View } from "./geometry";
 
 type Point = [number, number];
 
@@ -126,7 +126,7 @@ export function proposal(view: View | null, [width, height]: Point): Point[] {
     for (let i = 0.5; i < 16; i++)
       for (let j = 0.5; j < 16; j++) {
         const at: Point = [(i / 16) * w, (j / 16) * h];
-        if (isIn(project(view.to_photo, at))) seen.push(at);
+        if (isIn(inPhoto(view, at))) seen.push(at);
       }
     const middle = [0, 1].map((k) => seen.reduce((sum, p) => sum + p[k], 0) / seen.length);
     for (let share = 0.9; seen.length && share > 0.04; share *= 0.9) {
@@ -136,7 +136,7 @@ export function proposal(view: View | null, [width, height]: Point): Point[] {
         [1, 1],
         [-1, 1],
       ].map(([x, y]) =>
-        project(view.to_photo!, [middle[0] + (x * share * w) / 2, middle[1] + (y * share * h) / 2]),
+        inPhoto(view, [middle[0] + (x * share * w) / 2, middle[1] + (y * share * h) / 2]),
       );
       if (corners.every(isIn)) return corners;
     }
@@ -147,11 +147,6 @@ export function proposal(view: View | null, [width, height]: Point): Point[] {
     [0.8, 0.1],
     [0.2, 0.1],
   ].map(([x, y]): Point => [x * width, y * height]);
-}
-
-function project(h: number[], [x, y]: Point): Point {
-  const w = h[6] * x + h[7] * y + h[8];
-  return [(h[0] * x + h[1] * y + h[2]) / w, (h[3] * x + h[4] * y + h[5]) / w];
 }
 
 function pairs(numbers: number[]): Point[] {

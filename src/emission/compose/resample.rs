@@ -14,7 +14,7 @@
 
 use super::cubic;
 use crate::error::Result;
-use crate::geometry::Homography;
+use crate::geometry::PhotoMap;
 use crate::image::{Image, pyramid};
 use crate::job::Job;
 use glam::{DVec2, Vec3};
@@ -38,7 +38,7 @@ pub struct Levels<'a> {
 /// and their side.
 pub fn smaller(
     photo: &Image,
-    to_photo: &Homography,
+    to_photo: &PhotoMap,
     centres: impl Iterator<Item = DVec2>,
     side: f64,
     job: Job,
@@ -57,7 +57,7 @@ fn level(pixels: f64, max: usize) -> usize {
 
 /// The lengths, in photo pixels, of the lines that connect the middles of opposite sides of a square of the unwarped
 /// image. NaN or infinite at the horizon.
-fn sides(to_photo: &Homography, middle: DVec2, side: f64) -> DVec2 {
+fn sides(to_photo: &PhotoMap, middle: DVec2, side: f64) -> DVec2 {
     let length = |axis: DVec2| {
         let half = axis * (0.5 * side);
         (to_photo.apply(middle + half) - to_photo.apply(middle - half)).length()
@@ -69,7 +69,7 @@ impl Levels<'_> {
     /// Mean colour of the photo over a square of the unwarped image, given by its centre `middle` and its side. `edit`
     /// changes the colour of each sample point. Only sample points within the photo count. `None` if there are none,
     /// or if the mean is not finite.
-    pub fn mean(&self, to_photo: &Homography, middle: DVec2, side: f64, edit: impl Fn(Vec3) -> Vec3) -> Option<Vec3> {
+    pub fn mean(&self, to_photo: &PhotoMap, middle: DVec2, side: f64, edit: impl Fn(Vec3) -> Vec3) -> Option<Vec3> {
         let pixels = sides(to_photo, middle, side);
         let level = level(pixels.min_element(), self.smaller.len());
         let image = level.checked_sub(1).map_or(self.photo, |i| &self.smaller[i]);
@@ -79,14 +79,18 @@ impl Levels<'_> {
 
         // Step from point to point in homogeneous coordinates, in which the map into the photo is linear.
         let counts = DVec2::new(across as f64, down as f64);
-        let first = to_photo.apply_homogeneous(middle + (0.5 / counts - 0.5) * side);
-        let [along_x, along_y] = [to_photo.0.x_axis * (side / counts.x), to_photo.0.y_axis * (side / counts.y)];
+        let first = to_photo.homography.apply_homogeneous(middle + (0.5 / counts - 0.5) * side);
+        let [along_x, along_y] = [0, 1].map(|k| to_photo.homography.0.col(k) * (side / counts[k]));
         let (mut sum, mut shown) = (Vec3::ZERO, 0.0);
         for j in 0..down {
             let start = first + along_y * j as f64;
             for i in 0..across {
                 let q = start + along_x * i as f64;
-                if let Some(colour) = cubic::colour(image, q.truncate() * (factor / q.z)) {
+                let at = match to_photo.lens.is_none() {
+                    true => q.truncate() * (factor / q.z),
+                    false => to_photo.lens.shown(q.truncate() / q.z) * factor,
+                };
+                if let Some(colour) = cubic::colour(image, at) {
                     sum += edit(colour);
                     shown += 1.0;
                 }
@@ -99,17 +103,18 @@ impl Levels<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{Homography, Radial};
     use crate::job::Monitor;
     use glam::DMat3;
 
-    fn mean(photo: &Image, to_photo: &Homography, middle: DVec2, side: f64) -> Option<Vec3> {
+    fn mean(photo: &Image, to_photo: &PhotoMap, middle: DVec2, side: f64) -> Option<Vec3> {
         Levels { photo, smaller: &[] }.mean(to_photo, middle, side, |colour| colour)
     }
 
     #[test]
     fn pixels_are_themselves_and_planes_exact_between_them() {
         let photo = Image::from_fn(9, 7, |x, y| [x as f32 + 0.5, 2.0 * y as f32, (x * x + y) as f32]).unwrap();
-        let same = Homography(DMat3::IDENTITY);
+        let same: PhotoMap = Homography(DMat3::IDENTITY).into();
         for (x, y) in [(0, 0), (4, 3), (8, 6)] {
             let middle = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
             assert_eq!(mean(&photo, &same, middle, 1.0), Some(photo.rgb(x, y)));
@@ -125,7 +130,7 @@ mod tests {
     fn areas_are_averaged_and_what_is_beyond_the_photo_left_out() {
         // Squares that cover 12 x 3 photo pixels. The mean of a linear image over a square is its value at the centre.
         let photo = Image::from_fn(96, 30, |x, y| [x as f32 + 0.5 + 10.0 * (y as f32 + 0.5); 3]).unwrap();
-        let wide = Homography(DMat3::from_diagonal(glam::DVec3::new(12.0, 3.0, 1.0)));
+        let wide = Homography(DMat3::from_diagonal(glam::DVec3::new(12.0, 3.0, 1.0))).into();
         let found = mean(&photo, &wide, DVec2::new(4.5, 5.5), 1.0).unwrap();
         assert!((found.x - (54.0 + 165.0)).abs() < 1e-3, "{found}");
         // If half of the square lies outside the photo, only the other half counts.
@@ -138,15 +143,31 @@ mod tests {
         assert_eq!(mean(&hole, &wide, DVec2::new(4.5, 4.2), 1.0), None);
         // At the horizon the square covers unboundedly many photo pixels, but the limit on the sample points keeps the
         // time short.
-        let horizon = Homography(DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [1.0, 1.0, -1.0]]));
+        let horizon =
+            Homography(DMat3::from_cols_array_2d(&[[1.0, 0.0, 0.0], [0.0, 1.0, 1.0], [1.0, 1.0, -1.0]])).into();
         for y in [0.9, 1.0, 1.0 + 1e-9, 1.5] {
             mean(&photo, &horizon, DVec2::new(0.5, y), 1.0);
         }
     }
 
     #[test]
+    fn the_distortion_of_a_lens_is_part_of_the_map() {
+        // In the photo of an ideal lens, the values would be linear, so their mean is the value at the centre.
+        let lens = Radial::new(-0.2, DVec2::new(48.0, 15.0), DVec2::new(96.0, 30.0)).unwrap();
+        let photo = Image::from_fn(96, 30, |x, y| {
+            let ideal = lens.ideal(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+            [(ideal.x + 10.0 * ideal.y) as f32; 3]
+        });
+        let homography = Homography(DMat3::from_diagonal(glam::DVec3::new(12.0, 3.0, 1.0)));
+        let at = |map: &PhotoMap| mean(photo.as_ref().unwrap(), map, DVec2::new(5.5, 6.5), 1.0).unwrap().x;
+        let found = at(&PhotoMap { homography, lens });
+        assert!((found - (66.0 + 195.0)).abs() < 0.1, "{found}");
+        assert!((at(&homography.into()) - found).abs() > 1.0);
+    }
+
+    #[test]
     fn wide_squares_are_read_from_smaller_copies() {
-        let wide = Homography(DMat3::from_diagonal(glam::DVec3::new(40.0, 20.0, 1.0)));
+        let wide = Homography(DMat3::from_diagonal(glam::DVec3::new(40.0, 20.0, 1.0))).into();
         let centres = || [DVec2::new(3.0, 4.0)].into_iter();
         // A linear ramp plus stripes that are two pixels wide and average to 0.
         let stripe = |x: usize| if x % 4 < 2 { 200.0 } else { -200.0 };

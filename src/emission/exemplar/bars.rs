@@ -7,7 +7,7 @@
 
 use super::foreshortening::LocalMap;
 use crate::error::Result;
-use crate::geometry::Homography;
+use crate::geometry::PhotoMap;
 use crate::geometry::robust::weighted_median;
 use crate::image::{Image, try_vec};
 use std::collections::VecDeque;
@@ -40,7 +40,7 @@ pub struct LitPlane<'a> {
     pub light: &'a Image,
     /// 1 for pixels on the plane, else 0.
     pub valid: &'a Image,
-    pub to_photo: Option<Homography>,
+    pub to_photo: Option<PhotoMap>,
 }
 
 impl LitPlane<'_> {

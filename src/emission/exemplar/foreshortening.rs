@@ -1,6 +1,6 @@
 //! Foreshortening: the number of photo pixels that show each part of the unwarped image.
 
-use crate::geometry::Homography;
+use crate::geometry::{Homography, PhotoMap};
 use glam::{DMat2, DVec2};
 
 /// First-order approximation of the map from the unwarped image into the photo, near a point.
@@ -11,9 +11,9 @@ pub struct LocalMap {
 }
 
 impl LocalMap {
-    /// The map near a point of the unwarped image. Without a homography, the unwarped image stands for the photo: the
+    /// The map near a point of the unwarped image. Without a map, the unwarped image stands for the photo: the
     /// map is the identity.
-    pub fn new(to_photo: Option<Homography>, at: DVec2) -> Self {
+    pub fn new(to_photo: Option<PhotoMap>, at: DVec2) -> Self {
         let jacobian = to_photo.map_or(DMat2::IDENTITY, |h| {
             let p = |dx: f64, dy: f64| h.apply(at + DVec2::new(dx, dy));
             DMat2::from_cols(p(0.5, 0.0) - p(-0.5, 0.0), p(0.0, 0.5) - p(0.0, -0.5))
@@ -42,10 +42,10 @@ impl LocalMap {
 
 /// The part of an unwarped image in which unwarping magnifies the photo by at most a given factor. The magnification at
 /// a point is a length in the unwarped image over the same length in the photo. The factor is relative to the
-/// magnification at the least magnified pixel.
+/// magnification at the least magnified pixel. The distortion of the lens, which hardly changes it, does not count.
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
-    to_photo: Homography,
+    homography: Homography,
     /// Largest allowed value of |w|, where w is the third homogeneous coordinate of a point that the homography has
     /// mapped. The magnification of lengths is proportional to |w|^(3/2).
     max_denominator: f64,
@@ -54,12 +54,13 @@ pub struct MagnificationLimit {
 impl MagnificationLimit {
     /// The part of the image that is magnified at most `max_magnification` times as much as the least magnified `shown`
     /// pixel; `None` if all `shown` pixels meet this limit.
-    pub fn new(to_photo: Homography, (shown, width): (&[bool], usize), max_magnification: f64) -> Option<Self> {
-        let denominator = |i: usize| denominator(&to_photo, pixel_centre(i, width));
+    pub fn new(to_photo: &PhotoMap, (shown, width): (&[bool], usize), max_magnification: f64) -> Option<Self> {
+        let homography = to_photo.homography;
+        let denominator = |i: usize| denominator(&homography, pixel_centre(i, width));
         let values = || (0..shown.len()).filter(|&i| shown[i]).map(denominator);
         let (low, high) = values().fold((f64::INFINITY, 0.0f64), |(low, high), d| (low.min(d), high.max(d)));
         let max_denominator = low * max_magnification.powf(2.0 / 3.0);
-        (max_denominator < high).then_some(Self { to_photo, max_denominator })
+        (max_denominator < high).then_some(Self { homography, max_denominator })
     }
 
     /// Clears `shown` for the pixels beyond the limit.
@@ -69,7 +70,7 @@ impl MagnificationLimit {
 
     /// Whether the magnification at a point of the unwarped image is within the limit.
     pub fn contains(&self, at: DVec2) -> bool {
-        denominator(&self.to_photo, at) <= self.max_denominator
+        denominator(&self.homography, at) <= self.max_denominator
     }
 }
 
@@ -77,6 +78,6 @@ fn pixel_centre(i: usize, width: usize) -> DVec2 {
     DVec2::new((i % width) as f64, (i / width) as f64) + 0.5
 }
 
-fn denominator(to_photo: &Homography, at: DVec2) -> f64 {
-    (to_photo.0 * at.extend(1.0)).z.abs()
+fn denominator(homography: &Homography, at: DVec2) -> f64 {
+    (homography.0 * at.extend(1.0)).z.abs()
 }

@@ -13,7 +13,7 @@ use super::components::Components;
 use super::foreshortening::LocalMap;
 use super::measured_lamp::MeasuredLamp;
 use super::roles::Role;
-use crate::geometry::Homography;
+use crate::geometry::PhotoMap;
 use glam::DVec2;
 
 /// A group of similar pieces is a major kind of lamps if it has at least this share of the photo pixels of all lamps.
@@ -30,7 +30,7 @@ const MAX_GAP: f64 = 0.35;
 const MIN_KIND_COUNT: usize = 3;
 
 /// Gives the fragments among the whole lamps the role [`Role::Cut`].
-pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], to_photo: Homography) {
+pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], to_photo: PhotoMap) {
     let mut lamps: Vec<MeasuredLamp> = Vec::new();
     for (k, component) in components.list.iter().enumerate().filter(|(k, _)| roles[*k].is_whole()) {
         lamps.push(MeasuredLamp::new(k, component, photo_area[k], Some(to_photo)));

@@ -3,7 +3,7 @@
 
 use super::components::Component;
 use super::foreshortening::LocalMap;
-use crate::geometry::Homography;
+use crate::geometry::PhotoMap;
 use glam::DVec2;
 
 /// Two lamps are of one kind if they differ along each axis by at most this share of the longer side, plus an allowance
@@ -35,7 +35,7 @@ pub struct MeasuredLamp {
 }
 
 impl MeasuredLamp {
-    pub fn new(component: usize, lamp: &Component, weight: f64, to_photo: Option<Homography>) -> Self {
+    pub fn new(component: usize, lamp: &Component, weight: f64, to_photo: Option<PhotoMap>) -> Self {
         let size = DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64);
         let blur = LocalMap::new(to_photo, lamp.centre).photo_pixel();
         Self { component, centre: lamp.centre, size, weight, blur }

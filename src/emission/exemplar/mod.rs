@@ -14,7 +14,7 @@ pub mod working;
 use super::agreement::statistics::{Pattern, Statistics};
 use super::params::Input;
 use crate::error::{Error, Result};
-use crate::geometry::Homography;
+use crate::geometry::PhotoMap;
 use crate::image::{Image, colour, try_collect, try_vec};
 use crate::job::Job;
 use components::{Component, Components};
@@ -51,7 +51,7 @@ pub struct Exemplar {
     /// Share of the pixels marked in `shown` that is lit.
     pub lit_share: f64,
     /// The map from unwarped pixels into the photo, if there is one.
-    pub to_photo: Option<Homography>,
+    pub to_photo: Option<PhotoMap>,
     pub working: Working,
 }
 
@@ -63,7 +63,7 @@ impl Exemplar {
         let (width, height) = (image.width, image.height);
         let mut shown = shown_pixels(input)?;
         if let Some((_, to_photo)) = input.photo.filter(|_| max_magnification > 0.0) {
-            let limit = MagnificationLimit::new(to_photo, (&shown, width), max_magnification);
+            let limit = MagnificationLimit::new(&to_photo, (&shown, width), max_magnification);
             limit.inspect(|limit| limit.restrict(&mut shown, width));
         }
         let (components, photo_area) = lights(input, &shown)?;
@@ -170,7 +170,7 @@ impl Exemplar {
     /// The part of the exemplar that unwarping magnifies at most `max_magnification` times as much as the least
     /// magnified pixel. `None` if this part is the whole exemplar, or without a photo.
     pub fn magnification_limit(&self, max_magnification: f64) -> Option<MagnificationLimit> {
-        MagnificationLimit::new(self.to_photo?, (&self.shown, self.width), max_magnification)
+        MagnificationLimit::new(&self.to_photo?, (&self.shown, self.width), max_magnification)
     }
 }
 
@@ -214,7 +214,7 @@ fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
 
 /// Area of each component in photo pixels, by the magnification at its centre; without a photo, its area in unwarped
 /// pixels.
-fn photo_areas(components: &Components, to_photo: Option<Homography>) -> Vec<f64> {
+fn photo_areas(components: &Components, to_photo: Option<PhotoMap>) -> Vec<f64> {
     components.list.iter().map(|c| c.area as f64 * LocalMap::new(to_photo, c.centre).area()).collect()
 }
 

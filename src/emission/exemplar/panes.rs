@@ -192,7 +192,8 @@ mod tests {
         // With a homography that makes the lower rows ever less sharp, the period predicts the bars there.
         let [unwarped, light, valid] = ceiling(fading);
         let towards = glam::DMat3::from_cols_array(&[1.0, 0.0, 0.0, 0.0, 1.0, 0.01, 0.0, 0.0, 1.0]);
-        let plane = LitPlane { unwarped: &unwarped, light: &light, valid: &valid, to_photo: Some(Homography(towards)) };
+        let plane =
+            LitPlane { unwarped: &unwarped, light: &light, valid: &valid, to_photo: Some(Homography(towards).into()) };
         let light = part(&plane, Monitor::default().job()).unwrap().unwrap();
         let panes = components::find(SIDE, SIDE, |i| light.data[i] >= 0.5).unwrap().list;
         assert_eq!(panes.len(), 36);

@@ -2,6 +2,7 @@
 //! plane.
 
 use crate::geometry::robust::weighted_median;
+use crate::geometry::{Perspective, Radial};
 use crate::image::Image;
 use crate::image::regions::Regions;
 use crate::{error::Result, image::try_vec};
@@ -42,10 +43,10 @@ const MIN_SEMIAXIS: f64 = 0.5;
 /// A region of the mask that shows a complete shape, that is, a lamp inside the photo.
 #[derive(Clone, Copy, Debug)]
 pub struct Shape {
-    /// Centre of the region in photo pixels, relative to the principal point.
+    /// Centre of the region relative to the principal point, in pixels of the photo that an ideal lens would take.
     centre: DVec2,
-    /// For each width in [`BLOOMS`], the covariance of the region's pixel positions after bloom of this width is
-    /// removed.
+    /// For each width in [`BLOOMS`], the covariance of the region's positions in that photo, after bloom of this width
+    /// is removed from the region in the photo.
     covariances: [DMat2; BLOOMS.len()],
     /// Standard deviation of the `log_size` (`size_error`) and of the `stretch` (`stretch_error`) of the region's
     /// [`Form`].
@@ -79,12 +80,18 @@ fn without_border(covariance: DMat2, width: f64) -> DMat2 {
 }
 
 impl Shape {
-    fn new(centre: DVec2, covariance: DMat2, bloom_unit: f64) -> Self {
-        let covariances = BLOOMS.map(|bloom| without_border(covariance, bloom * bloom_unit));
+    /// The shape of a region with this centre and covariance in the photo; both `centre` and `lens` are relative to the
+    /// principal point.
+    fn new(centre: DVec2, covariance: DMat2, lens: &Radial, bloom_unit: f64) -> Self {
+        let mut covariances = BLOOMS.map(|bloom| without_border(covariance, bloom * bloom_unit));
+        if !lens.is_none() {
+            let derivative = lens.derivative(centre);
+            covariances = covariances.map(|c| derivative * c * derivative.transpose());
+        }
         // The variances of a uniform ellipse are a quarter of its squared semi-axes.
         let [a, b] = axes(covariance).0.map(|variance| BORDER_ERROR / (2.0 * variance.sqrt()));
         let (size_error, stretch_error) = ((a + b).hypot(VARIETY), (0.5 * a.hypot(b)).hypot(VARIETY));
-        Self { centre, covariances, size_error, stretch_error }
+        Self { centre: lens.ideal(centre), covariances, size_error, stretch_error }
     }
 
     /// Returns the form of the shape on the plane at distance 1 from the camera. `None` if the ray to the shape misses
@@ -106,7 +113,7 @@ impl Shape {
 
 /// Finds the largest regions of a mask, at most [`MAX_SHAPES`]. Regions that touch the border of the photo or have
 /// fewer than [`MIN_PIXELS`] pixels are left out.
-pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
+pub fn of_mask(mask: &Image, camera: &Perspective) -> Result<Vec<Shape>> {
     #[derive(Clone, Copy, Default)]
     struct Sums {
         count: f64,
@@ -119,7 +126,7 @@ pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
     let mut sums = try_vec(regions.count, Sums::default())?;
     for (pixel, &label) in regions.labels.iter().enumerate().filter(|(_, label)| **label > 0) {
         let sum = &mut sums[label as usize - 1];
-        let at = mask.centre_of(pixel) - principal;
+        let at = mask.centre_of(pixel) - camera.principal;
         sum.count += 1.0;
         sum.first += at;
         sum.second = [sum.second[0] + at.x * at.x, sum.second[1] + at.x * at.y, sum.second[2] + at.y * at.y];
@@ -130,12 +137,14 @@ pub fn of_mask(mask: &Image, principal: DVec2) -> Result<Vec<Shape>> {
     let mut whole: Vec<Sums> = sums.into_iter().filter(|sum| !sum.is_cut && sum.count >= MIN_PIXELS).collect();
     whole.sort_by(|a, b| b.count.total_cmp(&a.count));
     whole.truncate(MAX_SHAPES);
+    let lens = Radial { centre: DVec2::ZERO, bend: camera.bend };
     let shape = |sum: &Sums| {
         let mean = sum.first / sum.count;
         let [xx, xy, yy] = sum.second.map(|s| s / sum.count);
         let cross = xy - mean.x * mean.y;
         let (x, y) = (xx - mean.x * mean.x + PIXEL_VARIANCE, yy - mean.y * mean.y + PIXEL_VARIANCE);
-        Shape::new(mean, DMat2::from_cols(DVec2::new(x, cross), DVec2::new(cross, y)), bloom_unit)
+        let covariance = DMat2::from_cols(DVec2::new(x, cross), DVec2::new(cross, y));
+        Shape::new(mean, covariance, &lens, bloom_unit)
     };
     Ok(whole.iter().map(shape).collect())
 }

@@ -44,7 +44,7 @@ impl View {
     /// other.
     pub fn with_lamps_alike(&self, plane: &Image, lamps: &Image, job: Job) -> Result<Option<View>> {
         let Some((by_lines, error)) = self.uncertain_tilt(plane) else { return Ok(None) };
-        let shapes = likeness::of_mask(lamps, self.perspective.principal)?;
+        let shapes = likeness::of_mask(lamps, &self.perspective)?;
         if shapes.len() < MIN_SHAPES {
             return Ok(None);
         }

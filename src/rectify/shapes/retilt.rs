@@ -24,8 +24,10 @@ impl View {
     /// most lines run along them.
     pub(super) fn retilted(&self, found: &TiltEstimate, shapes: &[Shape], [width, height]: [usize; 2]) -> View {
         let frame = Frame::new(width, height, self.perspective.principal);
-        let segments: Vec<Segment> = self.segments.iter().map(|(segment, _)| *segment).collect();
-        let indexed = frame.weighted_lines(&segments);
+        let (segments, lens): (Vec<Segment>, _) =
+            (self.segments.iter().map(|s| s.0).collect(), self.perspective.lens());
+        let straight: Vec<_> = segments.iter().map(|s| Segment { a: lens.ideal(s.a), b: lens.ideal(s.b) }).collect();
+        let indexed = frame.weighted_lines(&straight);
         let lines: Vec<WeightedLine> = indexed.iter().map(|(_, line)| *line).collect();
 
         // Rotate the axes to run along the lines. Then let the lines correct the axes and the focal length, and keep

@@ -19,7 +19,7 @@ fn camera(normal: DVec3, focal: f64) -> Perspective {
     let ahead = (DVec3::Z - down * down.z).normalize();
     let axes = DMat3::from_cols(down.cross(ahead), down, ahead);
     let principal = DVec2::new(SIZE[0] as f64, SIZE[1] as f64) / 2.0;
-    Perspective { focal, focal_source: FocalSource::Assumed, principal, axes }
+    Perspective { focal, focal_source: FocalSource::Assumed, principal, bend: 0.0, axes }
 }
 
 /// A view whose axes are uncertain, as if only a few lines determined them. `error` is the standard deviation of each
@@ -40,6 +40,7 @@ fn view(normal: DVec3, error: f64) -> View {
         focal_spread: expected_focal.spread,
         squareness: [None; 3],
         distortion: None,
+        undone: 0.0,
         expected_focal,
     }
 }

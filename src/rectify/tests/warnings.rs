@@ -16,6 +16,7 @@ fn camera(yaw: f64, pitch: f64) -> Perspective {
         focal: 700.0,
         focal_source: FocalSource::Given,
         principal: DVec2::new(WIDTH as f64, HEIGHT as f64) / 2.0,
+        bend: 0.0,
         axes: DMat3::from_quat(DQuat::from_rotation_x(pitch) * DQuat::from_rotation_y(yaw)),
     }
 }
@@ -88,7 +89,7 @@ fn unwarped(to_photo: DMat3) -> Unwarped {
     Unwarped {
         image: Image::new(100, 80, 3).unwrap(),
         valid: Image::from_fn(100, 80, |_, _| [1.0]).unwrap(),
-        to_photo: Homography(to_photo).rescaled(),
+        to_photo: Homography(to_photo).rescaled().into(),
         pixel_size: 0.01,
         corners: [DVec2::ZERO; 4],
         aspect_confidence: 1.0,

@@ -112,7 +112,7 @@ def rectify_of(
 ) -> tuple[luxfer.Rectify, list[int]]:
     """Returns the library's camera for given directions of the room axes, whose first two span the plane, and the
     indices of these two in it."""
-    rectify = luxfer.Rectify(context, drawing(axes, focal, *size)).run(focal=focal)
+    rectify = luxfer.Rectify(context, drawing(axes, focal, *size)).run(focal=focal, distortion=0)
     alike = np.abs(np.array(axes) @ np.array(rectify.report.axes).T)
     if alike.max(axis=1).min() < math.cos(MAX_DIFFERENCE) or len(set(alike.argmax(axis=1))) < 3:
         raise Invalid("the grid does not fit a camera: drag its corners so that it lies on the plane as tiles would")

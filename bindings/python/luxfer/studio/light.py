@@ -182,6 +182,7 @@ class Light:
     def send_view(self, project: Project) -> None:
         """Sends the vanishing points and, once the plane has been unwarped, its rectangle."""
         view = self.transfer.view
+        photo_width, photo_height = self.photo.size[:2]
         width, height, _ = self.transfer.image("unwarped").size if view.is_unwarped else (0, 0, 0)
         self.send(
             "view",
@@ -193,6 +194,7 @@ class Light:
             unwarped=[width, height] if view.is_unwarped else None,
             to_photo=view.to_photo if view.is_unwarped else None,
             pixel_size=view.pixel_size,
+            lens=[*view.principal, 4 * view.undone / (photo_width**2 + photo_height**2)],
         )
 
     def send_warnings(self) -> None:

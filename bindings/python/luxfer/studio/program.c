@@ -234,6 +234,7 @@ static void use_grid(luxfer_transfer *transfer, luxfer_image *photo, luxfer_rect
     drawing = draw(width, height);
     check(luxfer_rectify_params_init(&params, sizeof params), "grid");
     params.focal = photo_focal;
+    params.distortion = 0;
     check(luxfer_rectify_create(context, &rectify), "grid");
     check(luxfer_rectify_set_photo(rectify, drawing), "grid");
     check(luxfer_rectify_start(rectify, &params, &job), "grid");
