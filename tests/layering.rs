@@ -33,7 +33,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("segment", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "features"]),
     ("rectify", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry"]),
     ("emission", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
-    ("fixture", &["error", "job", "image", "geometry", "scene"]),
+    ("pendant", &["error", "job", "image", "geometry", "scene"]),
     ("relight", &["error", "warning", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
     ("stylize", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
     // Pipelines, which pass data between stages.
