@@ -5,8 +5,8 @@
 //! system cannot serve one of them, Rust aborts the process, and the host with it. The library therefore keeps a
 //! reserve of 8 MiB, which occupies no physical memory until it is used. The reserve serves small allocations that the
 //! system cannot serve; every job of the process then ends with an error at its next check. Third-party codecs and new
-//! threads cannot handle failed allocations, and need more memory than the reserve has. Before they run, [`can_allocate`]
-//! tests whether the system has enough memory.
+//! threads cannot handle failed allocations, and need more memory than the reserve has. Before they run,
+//! [`can_allocate`] tests whether the system has enough memory.
 //!
 //! The process can still be aborted in three cases:
 //!

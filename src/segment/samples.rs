@@ -160,8 +160,8 @@ pub fn ownership(input: &Input) -> Result<Ownership> {
     Ok(Ownership { positive, negative, contradictory, off_image })
 }
 
-/// Returns the features of up to [`MAX_UNLABELLED`] pixels spread over the region to be segmented, whether a stroke covers
-/// them or not: `channels.len()` values per pixel.
+/// Returns the features of up to [`MAX_UNLABELLED`] pixels spread over the region to be segmented, whether a stroke
+/// covers them or not: `channels.len()` values per pixel.
 pub fn unlabelled(input: &Input, channels: &[usize]) -> Vec<f64> {
     let features = input.features;
     // The step must not divide the width: otherwise only a few columns would be sampled.
