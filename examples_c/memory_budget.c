@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { SIDE = 512, MOST = 16 };
+enum { SIDE = 512, MAX_IMAGES = 16 };
 
 /* Creates a grey image of 512 x 512 pixels. It takes 3 MiB, because the library stores all samples as 32-bit
  * floats. */
@@ -29,7 +29,7 @@ static luxfer_status load(luxfer_context *context, luxfer_image **image) {
 int main(void) {
     luxfer_context_params params;
     luxfer_context *context = NULL;
-    luxfer_image *images[MOST] = {NULL};
+    luxfer_image *images[MAX_IMAGES] = {NULL};
     luxfer_status status = luxfer_context_params_init(&params, sizeof params);
     int count = 0, i;
 
@@ -40,7 +40,7 @@ int main(void) {
     if (status != LUXFER_OK) return 1;
 
     /* --8<-- [start:budget] */
-    while (count < MOST && (status = load(context, &images[count])) == LUXFER_OK) count++;
+    while (count < MAX_IMAGES && (status = load(context, &images[count])) == LUXFER_OK) count++;
     if (status == LUXFER_OUT_OF_MEMORY) {
         /* The message gives the memory in use. The context remains usable. */
         char message[512] = "";
@@ -56,7 +56,7 @@ int main(void) {
     printf("after letting go of one: %s\n", luxfer_status_get_name(status));
     /* --8<-- [end:budget] */
 
-    for (i = 0; i < MOST; i++) luxfer_release(images[i]);
+    for (i = 0; i < MAX_IMAGES; i++) luxfer_release(images[i]);
     luxfer_release(context);
     return status == LUXFER_OK ? 0 : 1;
 }

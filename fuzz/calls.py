@@ -29,7 +29,7 @@ BOUNDS = {"count": 257, "capacity": 257, "size": script.ROOM + 1, "stride": 256,
 PATHS = ["", "no/such/place/a.png", *(f"{name}.{ending}" for name in "ab" for ending in ("png", "exr", "glb", "ldt", "ies", "csv"))]
 PATHS += ["layers.exr", "part0.exr", "part1.exr", "lamps.csv"]
 #: Maximum number of bytes of an array in the encoded calls; the decoder repeats them to fill its memory.
-LONGEST = 192
+MAX_BYTES = 192
 
 
 def is_record(kind: str) -> bool:
@@ -99,7 +99,7 @@ class Program:
             raise SystemExit(f"{function}: {f.name} has no struct_size")
         if kind in ("null", "room"):
             return struct.pack("<H", 0xFFFF if kind == "null" else 0)
-        content = bytes.fromhex(rest[0]) if kind == "bytes" else b"".join(number(rest[0], n) for n in rest[1])[:LONGEST]
+        content = bytes.fromhex(rest[0]) if kind == "bytes" else b"".join(number(rest[0], n) for n in rest[1])[:MAX_BYTES]
         return struct.pack("<H", len(content)) + content
 
     def record(self, name: str, fields: dict, base: str) -> bytes:

@@ -145,7 +145,7 @@ fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 /// Starts a thread. The thread suppresses panic messages if the thread that starts it does. Returns the error
 /// `OutOfMemory` if fewer than `THREAD_OVERHEAD` bytes are left.
 pub fn spawn(name: &str, work: impl FnOnce() + Send + 'static) -> io::Result<JoinHandle<()>> {
-    if !reserve::has_room(THREAD_OVERHEAD) {
+    if !reserve::can_allocate(THREAD_OVERHEAD) {
         return Err(io::ErrorKind::OutOfMemory.into());
     }
     let is_quiet = quiet::is_on();
@@ -277,7 +277,7 @@ fn map_dyn<T: Send>(count: usize, job: Job, work: &(dyn Fn(usize) -> T + Sync)) 
     Ok(values)
 }
 
-/// Returns an empty list with room for `count` items, or an error if there is no memory.
+/// Returns an empty list with memory for `count` items, or an error if there is no memory.
 fn list_with_capacity<T>(count: usize) -> Result<Vec<T>> {
     let none = || Error::new(ErrorKind::OutOfMemory, format!("could not allocate {count} results"));
     reserve::list(count).ok_or_else(none)

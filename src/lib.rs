@@ -69,7 +69,7 @@ pub mod warning;
 
 pub mod emission;
 pub mod features;
-pub mod fixture;
+pub mod pendant;
 pub mod rectify;
 pub mod relight;
 pub mod render;

@@ -5,12 +5,12 @@
 //! system cannot serve one of them, Rust aborts the process, and the host with it. The library therefore keeps a
 //! reserve of 8 MiB, which occupies no physical memory until it is used. The reserve serves small allocations that the
 //! system cannot serve; every job of the process then ends with an error at its next check. Third-party codecs and new
-//! threads cannot handle failed allocations, and need more memory than the reserve has. Before they run, [`has_room`]
-//! tests whether the system has enough memory.
+//! threads cannot handle failed allocations, and need more memory than the reserve has. Before they run,
+//! [`can_allocate`] tests whether the system has enough memory.
 //!
 //! The process can still be aborted in three cases:
 //!
-//! - Another thread takes the memory right after the test by [`has_room`].
+//! - Another thread takes the memory right after the test by [`can_allocate`].
 //! - The system cannot serve the 48 bytes that the standard library requests directly from the system, bypassing the
 //!   reserve. The standard library does so when a thread starts, and when a call of the library first fails on a
 //!   thread.
@@ -40,7 +40,7 @@ pub fn uses() -> u64 {
     ALLOCATOR.0.uses.load(Ordering::Relaxed)
 }
 
-/// Returns an empty list with room for `len` items; `None` if the system has no memory. The list never takes memory
+/// Returns an empty list with memory for `len` items; `None` if the system has no memory. The list never takes memory
 /// from the reserve, because the caller can handle failure.
 pub fn list<T>(len: usize) -> Option<Vec<T>> {
     let layout = Layout::array::<T>(len).ok()?;
@@ -72,7 +72,7 @@ pub fn reserve_capacity<T>(items: &mut Vec<T>, more: usize) -> bool {
 
 /// Whether the system can allocate this number of bytes now. Call it before code that aborts the process when memory
 /// runs out.
-pub fn has_room(bytes: usize) -> bool {
+pub fn can_allocate(bytes: usize) -> bool {
     // Keep the optimiser from removing the unused allocation, with `black_box`.
     std::hint::black_box(list::<u8>(bytes)).is_some()
 }
@@ -239,7 +239,7 @@ mod tests {
     }
 
     #[test]
-    fn things_lie_apart_aligned_and_within_the_room() {
+    fn blocks_lie_apart_aligned_and_within_the_reserve() {
         static RESERVE: Reserve = Reserve::new();
         let mut held: Vec<(usize, *mut u8)> = Vec::new();
         let mut rng = crate::rng::Rng::new(1, &[]);
@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn lists_have_the_room_they_are_asked_for() {
+    fn lists_have_the_requested_capacity() {
         let mut items = list::<u32>(3).unwrap();
         assert!(items.capacity() >= 3 && items.is_empty());
         for item in 0..200_000 {
@@ -283,10 +283,10 @@ mod tests {
             assert_eq!(items.as_ptr(), storage);
         }
         assert!(items.iter().zip(0..).all(|(item, i)| *item == i));
-        assert!(list::<u32>(0).is_some() && list::<()>(9).is_some() && has_room(1 << 16));
+        assert!(list::<u32>(0).is_some() && list::<()>(9).is_some() && can_allocate(1 << 16));
         assert!(
             list::<u32>(usize::MAX).is_none()
-                && !has_room(usize::MAX / 2)
+                && !can_allocate(usize::MAX / 2)
                 && !reserve_capacity(&mut items, usize::MAX / 4)
         );
         assert_eq!(items.len(), 200_000);

@@ -1,10 +1,10 @@
 //! Bodies of hanging lamps through the C functions: bad input, and rendered lamps whose bodies are known.
 
-#[path = "../benches/fixtures/bodies.rs"]
+#[path = "../benches/pendants/bodies.rs"]
 #[allow(dead_code)]
 mod bodies;
 mod host;
-#[path = "../benches/fixtures/rendered.rs"]
+#[path = "../benches/pendants/rendered.rs"]
 mod rendered;
 
 use bodies::BODIES;

@@ -33,7 +33,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("segment", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "features"]),
     ("rectify", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry"]),
     ("emission", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
-    ("fixture", &["error", "job", "image", "geometry", "scene"]),
+    ("pendant", &["error", "job", "image", "geometry", "scene"]),
     ("relight", &["error", "warning", "job", "exec", "rng", "image", "geometry", "scene", "render"]),
     ("stylize", &["error", "warning", "job", "exec", "rng", "image", "geometry", "patch"]),
     // Pipelines, which pass data between stages.
@@ -189,7 +189,13 @@ fn nothing_unfinished_nothing_printed_nothing_too_long() {
 
 #[test]
 fn comment_lines_are_not_too_long() {
+    let root_file = |name: &&str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"));
+        (path, text)
+    };
     let all = comments::FOLDERS.iter().flat_map(|folder| files(folder));
+    let all = all.chain(comments::ROOT_FILES.iter().map(root_file));
     let long = |(path, text): (PathBuf, String)| {
         comments::long_comments(&path, &text).into_iter().map(move |line| format!("{}:{line}", path.display()))
     };
@@ -199,6 +205,10 @@ fn comment_lines_are_not_too_long() {
     let line = |start: &str, length: usize| format!("{start}{}\n", "é".repeat(length - start.len()));
     let rust = line("// ", 120) + &line("let a = ", 130) + &line("// ", 121);
     assert_eq!(comments::long_comments(Path::new("a.rs"), &rust), [3]);
+    let script = line("# ", 120) + &line("echo ", 130) + &line("# ", 121);
+    for name in ["Makefile", ".ci/run", "mkdocs.yml", "deny.toml"] {
+        assert_eq!(comments::long_comments(Path::new(name), &script), [3], "{name}");
+    }
     let python = line("\"\"\"A ", 110) + &line("", 121) + "\"\"\"\na = \"\"\"\n" + &line("# ", 121) + "\"\"\"\n# ";
     assert_eq!(comments::long_comments(Path::new("a.py"), &line(&python, python.len() + 120)), [2, 7]);
 }

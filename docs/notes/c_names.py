@@ -1,4 +1,5 @@
-"""Writes the tables of docs/notes/plain-words.md: what became of the C functions of an earlier commit.
+"""Writes the tables of docs/notes/plain-words.md: what became of the C functions of an earlier commit, and
+which functions are new.
 
     python3 docs/notes/c_names.py COMMIT
 
@@ -70,16 +71,37 @@ GONE = [
 ]
 
 
-def functions(header: str) -> list[str]:
-    """The functions that a header declares, without the prefix."""
+def functions(header: str) -> dict[str, list[str]]:
+    """The functions that a header declares, without the prefix, each with its parameters."""
     code = re.sub(r"/\*.*?\*/", "", header, flags=re.S)
-    return list(dict.fromkeys(re.findall(r"^(?:static inline )?[a-z_][\w ]*?\*? ?\*?luxfer_(\w+)\(", code, re.M)))
+    found = re.findall(r"^(?:static inline )?[a-z_][\w ]*?\*? ?\*?luxfer_(\w+)\(([^)]*)\)", code, re.M)
+    return {name: [" ".join(p.split()).replace("struct ", "") for p in parameters.split(",")] for name, parameters in found}
+
+
+def kind(parameter: str) -> str:
+    """The type of a parameter, without its name; an array counts as a pointer."""
+    name = re.search(r"\w+(\[\d*\])?$", parameter)
+    return parameter[: name.start()].strip() + (" *" if name[1] else "")
+
+
+def changes(before: dict[str, list[str]], now: dict[str, list[str]]) -> list[str]:
+    """The lines that name the kept functions whose types of parameters have changed."""
+    sized, other = [], []
+    for name in (f for f in before if f in now):
+        old, new = ([kind(p) for p in parameters[name]] for parameters in (before, now))
+        if old != new:
+            (sized if new == [*old, "size_t"] and now[name][-1] == "size_t size" else other).append(name)
+    out = [f"{len(sized)} kept functions have a new last parameter `size_t size`, the size of the struct that they fill:", ""]
+    out += [", ".join(f"`luxfer_{f}`" for f in sized) + ".", ""]
+    out += [f"{len(other)} kept functions have other parameters:", "", "| function | parameters before | parameters now |", "|---|---|---|"]
+    return out + [f"| `luxfer_{f}` | `{', '.join(before[f])}` | `{', '.join(now[f])}` |" for f in other]
 
 
 def main(commit: str) -> int:
     show = ["git", "-C", str(ROOT), "show", f"{commit}:include/luxfer.h"]
     before = functions(subprocess.run(show, check=True, capture_output=True, text=True).stdout)
-    now = {f: path.stem for path in sorted((ROOT / "include/luxfer").glob("*.h")) for f in functions(path.read_text())}
+    headers = {path.stem: functions(path.read_text()) for path in sorted((ROOT / "include/luxfer").glob("*.h"))}
+    now = {f: header for header, declared in headers.items() for f in declared}
     reasons = {f: reason for group, reason in GONE for f in group}
     kept = Counter(now[f] for f in before if f in now)
     renamed = [f for f in before if f not in now and RENAMED.get(f) in now]
@@ -100,6 +122,14 @@ def main(commit: str) -> int:
             names = f"`luxfer_KIND_{found[0].rsplit('_', 1)[1]}` of each kind of handle"
         if found:
             out.append(f"| {names} | {len(found)} | {reason} |")
+    new = [f for f in now if f not in before and f not in {RENAMED[f] for f in renamed}]
+    out += ["", f"{len(new)} functions are new:", "", "| header | new |", "|---|---|"]
+    for header in headers:
+        if names := ", ".join(f"`luxfer_{f}`" for f in new if now[f] == header):
+            out.append(f"| `{header}.h` | {names} |")
+    out += ["", "### Kept functions whose declaration changed", ""]
+    out += ["Declarations count as equal if only names of parameters differ.", ""]
+    out += changes(before, {f: p for declared in headers.values() for f, p in declared.items()})
     head, _, rest = NOTE.read_text().partition(BEGIN)
     NOTE.write_text("\n".join([head + BEGIN, *out, "", END + rest.partition(END)[2]]))
     return 0

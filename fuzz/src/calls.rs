@@ -11,7 +11,7 @@ include!(concat!(env!("OUT_DIR"), "/table.rs"));
 
 /// Size in bytes of the memory behind every pointer: zeros, or the input's bytes repeated. It is larger than any call
 /// with truthful sizes needs.
-const ROOM: usize = 1 << 16;
+const BUFFER_BYTES: usize = 1 << 16;
 /// Maximum number of calls that one input makes.
 const MAX_CALLS: usize = 100;
 /// Factor by which work takes longer under Miri.
@@ -78,12 +78,12 @@ impl Arguments<'_> {
 
     /// Reads a number of the parameter's type; bytes after the end of the input are 0.
     fn number<T: Copy>(&mut self) -> T {
-        let mut room = [0u64; 2];
+        let mut buffer = [0u64; 2];
         let bytes = self.bytes(size_of::<T>());
         // SAFETY: every parameter that is not a pointer is a plain number of at most 8 bytes.
         unsafe {
-            std::ptr::copy_nonoverlapping(bytes.as_ptr(), room.as_mut_ptr().cast(), bytes.len());
-            room.as_ptr().cast::<T>().read()
+            std::ptr::copy_nonoverlapping(bytes.as_ptr(), buffer.as_mut_ptr().cast(), bytes.len());
+            buffer.as_ptr().cast::<T>().read()
         }
     }
 
@@ -105,8 +105,8 @@ impl Arguments<'_> {
     fn stranger(&mut self, byte: u8) -> Option<*mut u8> {
         match byte {
             250 => Some(std::ptr::null_mut()),
-            251 => Some(self.room().cast()),
-            252 => Some(self.room().wrapping_byte_add(1).cast()),
+            251 => Some(self.buffer().cast()),
+            252 => Some(self.buffer().wrapping_byte_add(1).cast()),
             _ => None,
         }
     }
@@ -157,7 +157,7 @@ impl Arguments<'_> {
 
     /// Returns where a call writes the handle that it creates.
     fn made(&mut self, kind: &'static str) -> *mut u64 {
-        let place = self.room();
+        let place = self.buffer();
         self.places.push((kind, place));
         place
     }
@@ -177,9 +177,9 @@ impl Arguments<'_> {
         }
     }
 
-    /// Allocates `ROOM` bytes of zeros.
-    fn room(&mut self) -> *mut u64 {
-        self.memory.push(vec![0; ROOM / 8].into());
+    /// Allocates `BUFFER_BYTES` bytes of zeros.
+    fn buffer(&mut self) -> *mut u64 {
+        self.memory.push(vec![0; BUFFER_BYTES / 8].into());
         self.memory.last_mut().expect("just pushed").as_mut_ptr()
     }
 
@@ -190,15 +190,15 @@ impl Arguments<'_> {
             return std::ptr::null_mut();
         }
         let content = self.bytes(length.into()).to_vec();
-        let room = self.room().cast::<u8>();
+        let buffer = self.buffer().cast::<u8>();
         if !content.is_empty() {
-            // SAFETY: `room` has just allocated these bytes.
-            let room = unsafe { std::slice::from_raw_parts_mut(room, ROOM) };
-            for piece in room.chunks_mut(content.len()) {
+            // SAFETY: `buffer` has just allocated these bytes.
+            let buffer = unsafe { std::slice::from_raw_parts_mut(buffer, BUFFER_BYTES) };
+            for piece in buffer.chunks_mut(content.len()) {
                 piece.copy_from_slice(&content[..piece.len()]);
             }
         }
-        room.cast()
+        buffer.cast()
     }
 
     fn text(&mut self) -> *const c_char {
@@ -222,7 +222,7 @@ impl Arguments<'_> {
         if base == 0 {
             return std::ptr::null_mut();
         }
-        let place = self.room().cast::<u8>();
+        let place = self.buffer().cast::<u8>();
         match (base, record.init) {
             (1, _) => {}
             (2, Some(init)) => {

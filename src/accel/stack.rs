@@ -20,7 +20,7 @@ pub(super) struct Stack<'a> {
 }
 
 impl<'a> Stack<'a> {
-    /// `entries` must have room for the maximum depth plus [`SLACK`].
+    /// `entries` must have capacity for the maximum depth plus [`SLACK`].
     #[inline(always)]
     pub fn new(entries: &'a mut [MaybeUninit<Waiting>]) -> Self {
         Self { entries, len: 0 }
@@ -60,7 +60,7 @@ impl<'a> Stack<'a> {
             let other = entry(take_lowest(&mut mask));
             let farther = nearest.max(other);
             nearest = nearest.min(other);
-            // Insertion sort: move nearer entries up to make room for `farther`.
+            // Insertion sort: move nearer entries up to free the place of `farther`.
             let mut index = self.len;
             while index > bottom && self.read(index - 1) < farther {
                 self.write(index, self.read(index - 1));
@@ -82,7 +82,7 @@ impl<'a> Stack<'a> {
     #[inline(always)]
     fn write(&mut self, index: usize, entry: Waiting) {
         debug_assert!(index < self.entries.len());
-        // SAFETY: `entries` has room for the maximum depth, which `index` does not exceed.
+        // SAFETY: `entries` has capacity for the maximum depth, which `index` does not exceed.
         unsafe { self.entries.get_unchecked_mut(index).write(entry) };
     }
 }

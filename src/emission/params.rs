@@ -164,8 +164,8 @@ impl Input<'_> {
     }
 }
 
-/// Maximum number of pixels at which the layout of a texture (its lamps and patches) is computed. The layout of a
-/// larger texture is computed at a lower resolution. [convention]
+/// Maximum number of pixels at which the composition of a texture (its lamps and patches) is computed. The composition
+/// of a larger texture is computed at a lower resolution. [convention]
 const MAX_WORKING_PIXELS: f64 = (1 << 28) as f64;
 
 impl Params {
@@ -181,8 +181,8 @@ impl Params {
 }
 
 /// Longest side, in pixels, of the exemplar at the reduced size of the synthesis: `params.working_side`, but at most
-/// the longest side of the unwarped image. It is smaller still if the layout of the texture would otherwise have more
-/// than `MAX_WORKING_PIXELS` pixels.
+/// the longest side of the unwarped image. It is smaller still if the composition of the texture would otherwise have
+/// more than `MAX_WORKING_PIXELS` pixels.
 pub fn working_side(input: &Input, params: &Params) -> f64 {
     let longest = input.unwarped.width.max(input.unwarped.height) as f64;
     let side = longest.min(params.working_side as f64);

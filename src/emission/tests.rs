@@ -303,8 +303,8 @@ fn a_coarse_photo_does_not_give_its_steps_to_the_outlines() {
     // With a photo, all lamps are drawn from their design, so the renderer needs no map of the lit blocks. Without a
     // photo, it needs the map.
     let has_map = |input: &Input| {
-        let plan = Composition::new(input, &[], &params, Monitor::default().job()).unwrap();
-        plan.layers[0].lit_blocks.is_some()
+        let composition = Composition::new(input, &[], &params, Monitor::default().job()).unwrap();
+        composition.layers[0].lit_blocks.is_some()
     };
     assert!(!has_map(&input) && has_map(&exemplar.input()));
 }

@@ -15,7 +15,7 @@ use glam::Vec3;
 
 /// Longest side in pixels of the reduced image in which strokes grow. The reduction averages noise, and turns the
 /// soft shades along a seam into an edge.
-const LONGEST: usize = 400;
+const MAX_SIDE: usize = 400;
 /// Standard deviation in pixels of the blur before gradients are computed. [convention]
 const SIGMA: f32 = 1.0;
 /// Strokes grow up to this gradient, in units of CIELAB per pixel of the reduced image. [judged on 58 photos]
@@ -60,7 +60,7 @@ pub fn grow(photo: &Image, strokes: &[PlaneStroke], job: Job) -> Result<Option<S
     if !(has(true) && has(false)) {
         return Ok(None);
     }
-    let scale = (LONGEST as f64 / photo.width.max(photo.height) as f64).min(1.0);
+    let scale = (MAX_SIDE as f64 / photo.width.max(photo.height) as f64).min(1.0);
     let size = [photo.width, photo.height].map(|n| ((n as f64 * scale).round() as usize).max(1));
     let costs = Costs { of: costs(photo, size, job.part(0.0, 0.8))?, width: size[0] };
     let parts = costs.smooth_parts()?;

@@ -18,6 +18,13 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::{DVec2, Vec3};
 
+/// The confidence of a pixel falls with the distance to the nearest segment that supports its face, from the trust in
+/// the layout to the share `UNSUPPORTED` of this trust. `FALLOFF` is the distance, as a share of the photo's diagonal,
+/// at which the difference has fallen to 1/e. The confidence is not calibrated: these values only let it fall with the
+/// distance. [convention]
+const UNSUPPORTED: f64 = 0.3;
+const FALLOFF: f64 = 0.15;
+
 impl Layout {
     /// Computes the inverse depth, normal and confidence of every pixel.
     pub fn surface(
@@ -73,7 +80,7 @@ impl Layout {
             })
             .take(MAX_SEGMENTS)
             .collect();
-        let falloff = 0.15 * DVec2::new(width as f64, height as f64).length();
+        let falloff = FALLOFF * DVec2::new(width as f64, height as f64).length();
 
         // Evaluate the confidence on a coarse grid, then interpolate bilinearly.
         let (columns, rows) = (width.div_ceil(16).min(64), height.div_ceil(16).min(64));
@@ -85,7 +92,7 @@ impl Layout {
                 let face = self.hit(ray(centre)).0;
                 let on_face = support.iter().filter(|(f, _)| *f == face);
                 let distance = on_face.map(|(_, p)| p.distance(centre)).fold(f64::INFINITY, f64::min);
-                *out = (self.trust * (0.3 + 0.7 * (-distance / falloff).exp())) as f32;
+                *out = (self.trust * (UNSUPPORTED + (1.0 - UNSUPPORTED) * (-distance / falloff).exp())) as f32;
             }
         })?;
         let mut confidence = Image::new(width, height, 1)?;

@@ -14,6 +14,16 @@ use glam::{DMat3, DVec2, DVec3};
 
 /// Only this number of the longest segments is used; the other segments are ignored.
 pub const MAX_SEGMENTS: usize = 160;
+/// The weight of a segment grows with its length only up to this share of the photo's diagonal, so that a few long
+/// segments do not outweigh all others. [bench features:layouts]
+const MAX_LENGTH: f64 = 0.25;
+/// Distances of a side, in units of the distance to the back wall, at which segments may propose it: far wider than the
+/// sides of rooms in photos (see `MIN_SIDE` of the search). The limits exclude segments near the vanishing point and
+/// near a right angle to the view. [convention]
+const PROPOSED_SIDES: std::ops::Range<f64> = 0.02..20.0;
+/// Two segments propose the same distance of a side if the logarithms of their distances differ by less than this.
+/// [bench features:layouts]
+const SAME_SIDE: f64 = 0.04;
 /// Sample points along each segment, as shares of its length. [bench features:layouts]
 const POINTS: [f64; 3] = [0.15, 0.5, 0.85];
 /// Penalty of a segment on a face that cannot contain it, relative to the segment's weight. [bench features:layouts]
@@ -39,8 +49,8 @@ struct RoomSegment {
     axis: usize,
     /// Ray through the segment's midpoint, in room axes.
     middle: DVec3,
-    /// Weight: the segment's share of the length of all used segments. A segment longer than a quarter of the photo's
-    /// diagonal counts with this length.
+    /// Weight: the segment's share of the length of all used segments. A segment longer than `MAX_LENGTH` times the
+    /// photo's diagonal counts with this length.
     weight: f64,
 }
 
@@ -91,8 +101,7 @@ impl Evidence {
     ) -> Result<Self> {
         let to_room = axes.transpose();
         let ray = |p: DVec2| to_room * room.perspective.ray(p);
-        // Let the weight of a segment grow with its length only up to a quarter of the photo's diagonal.
-        let longest = 0.25 * DVec2::new(width as f64, height as f64).length();
+        let longest = MAX_LENGTH * DVec2::new(width as f64, height as f64).length();
         let mut used: Vec<(f64, usize, [DVec3; 3])> =
             try_collect(room.segments.iter().filter_map(|(segment, axis)| {
                 let axis = axis.filter(|&a| a < 3)?;
@@ -154,18 +163,19 @@ impl Evidence {
             .filter(|w| w.axis == edge_axis)
             .filter_map(|w| {
                 let value = sign * w.middle[across] / w.middle.z;
-                (w.middle.z > 0.0 && (0.02..20.0).contains(&value)).then_some((value, w.weight))
+                (w.middle.z > 0.0 && PROPOSED_SIDES.contains(&value)).then_some((value, w.weight))
             })
             .collect();
         values.sort_by(|a, b| a.0.total_cmp(&b.0));
-        // The support of a value is the total weight of all values within 4 % of it. Take the best value, drop those
-        // within 4 % of it, and repeat.
-        let support = |v: f64| values.iter().filter(|(u, _)| (u / v).ln().abs() < 0.04).map(|(_, w)| w).sum::<f64>();
+        // The support of a value is the total weight of all values within `SAME_SIDE` of it. Take the best value, drop
+        // the values within `SAME_SIDE` of it, and repeat.
+        let support =
+            |v: f64| values.iter().filter(|(u, _)| (u / v).ln().abs() < SAME_SIDE).map(|(_, w)| w).sum::<f64>();
         let mut ranked: Vec<(f64, f64)> = values.iter().map(|&(v, _)| (v, support(v))).collect();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut chosen: Vec<f64> = Vec::new();
         for (value, _) in ranked {
-            if chosen.len() < count && chosen.iter().all(|c| (c / value).ln().abs() > 0.04) {
+            if chosen.len() < count && chosen.iter().all(|c| (c / value).ln().abs() > SAME_SIDE) {
                 chosen.push(value);
             }
         }

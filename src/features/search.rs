@@ -41,6 +41,13 @@ const MIN_RATIO: f64 = 1.3;
 const RAYS: usize = 9;
 /// Maximum number of boxes that are refined.
 const STARTS: usize = 6;
+/// The trust in the best box. With `n` segments it is at most `1 - exp(-n / TRUST_SEGMENTS)`, because few segments
+/// agree with many boxes. The share `MIN_TRUST` remains if another box has the same score; the rest grows with the lead
+/// over that box, and half of the rest is reached at a lead of `HALF_LEAD`. The confidence is not calibrated: these
+/// values only let it grow with segments and lead. [convention]
+const TRUST_SEGMENTS: f64 = 15.0;
+const MIN_TRUST: f64 = 0.3;
+const HALF_LEAD: f64 = 0.03;
 /// `REFINEMENTS`: ratio of neighbouring values of a side in each of the two refinements. `VALUES_EITHER_SIDE`: number
 /// of values tried on either side of the current value. Each refinement reaches beyond half a step of the grid before
 /// it: 1.006^8 > √`RATIO` and 1.0008^8 > √1.006. [convention]
@@ -98,12 +105,12 @@ pub fn find(room: &RoomView, surfaces: Option<&Surfaces>, size: [usize; 2], job:
     };
     let runner_up = runner_up(&tops).max(runner_up(&coarse));
     let lead = (best.1 - runner_up).max(0.0);
-    let evidence_weight = 1.0 - (-(evidence.len() as f64) / 15.0).exp();
+    let evidence_weight = 1.0 - (-(evidence.len() as f64) / TRUST_SEGMENTS).exp();
     job.report(1.0);
     Ok(Layout {
         sides: best.0,
         score: evidence.score(&best.0),
-        trust: evidence_weight * (0.3 + 0.7 * lead / (lead + 0.03)),
+        trust: evidence_weight * (MIN_TRUST + (1.0 - MIN_TRUST) * lead / (lead + HALF_LEAD)),
     })
 }
 

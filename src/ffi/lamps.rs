@@ -8,13 +8,13 @@ use super::context::luxfer_context;
 use super::guard::enter;
 use super::handle::{self, Handle, Owned, tag};
 use super::job::luxfer_job;
-use super::lamp_goal::StoredGoal;
 use super::params::{self, versioned};
 use super::pointer::Out;
 use super::query::LUXFER_NONE;
 use super::scene::{SceneObject, luxfer_scene, missing};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
+use super::stored_goal::StoredGoal;
 use crate::error::{Error, ErrorKind, Result};
 use crate::relight::{
     self, Colour, EmissionLamps, Goal, GroupParams, GroupSolution, Quantity, Responses, lamp_responses, solve_groups,

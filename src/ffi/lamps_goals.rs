@@ -6,13 +6,13 @@
 use super::geometry::list;
 use super::guard::enter;
 use super::illuminance::luxfer_illuminance_grid;
-use super::lamp_goal::{StoredGeometry, StoredGoal};
 use super::lamps::{Inputs, Output, luxfer_lamps};
 use super::params;
 use super::relight::{luxfer_constraint, luxfer_quantity, quantity, read_constraints};
 use super::scene::{colour, missing, read_colour};
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
+use super::stored_goal::{StoredGeometry, StoredGoal};
 use crate::error::{Error, Result, check_range};
 use crate::relight::{Aspect, Constraint, MAX_LEVELS, MAX_WEIGHT, Quantity};
 

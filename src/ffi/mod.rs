@@ -51,7 +51,6 @@ mod init;
 mod job;
 mod job_start;
 mod kinds;
-mod lamp_goal;
 mod lamps;
 mod lamps_goals;
 mod lamps_results;
@@ -80,6 +79,7 @@ mod scene_read;
 mod segment;
 mod sheet;
 mod status;
+mod stored_goal;
 mod strokes;
 #[cfg(feature = "stylize")]
 mod stylize;

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 
 /// Largest size that a struct has in this or any later version. A larger `struct_size` shows that the struct was not
 /// initialised.
-const LARGEST: usize = 4096;
+const MAX_SIZE: usize = 4096;
 
 /// A C struct that exists in several versions.
 ///
@@ -44,7 +44,7 @@ pub(super) use versioned;
 /// Whether a version of the library, past, present or future, can have a struct `P` of `size` bytes.
 fn is_known<P: Versioned>(size: usize) -> bool {
     debug_assert_eq!(P::SIZES.last(), Some(&size_of::<P>()));
-    P::SIZES.contains(&size) || (size_of::<P>()..=LARGEST).contains(&size)
+    P::SIZES.contains(&size) || (size_of::<P>()..=MAX_SIZE).contains(&size)
 }
 
 /// Checks the `size` that a caller passes to a function that fills a struct `P`.
@@ -137,7 +137,7 @@ fn size_at<P: Versioned>(place: *const P) -> Result<usize> {
 
 fn write<P: Versioned>(place: *mut P, value: P, size: usize) {
     let known = size.min(size_of::<P>());
-    // SAFETY: the caller's struct has `size` bytes, and `size` was checked to be at most `LARGEST`.
+    // SAFETY: the caller's struct has `size` bytes, and `size` was checked to be at most `MAX_SIZE`.
     unsafe {
         std::ptr::copy_nonoverlapping((&raw const value).cast::<u8>(), place.cast::<u8>(), known);
         place.cast::<u8>().add(known).write_bytes(0, size - known);
@@ -168,7 +168,7 @@ mod tests {
 
     /// Memory of a caller, larger than any struct: `size` in the first four bytes, then bytes 0xaa.
     fn memory(size: u32) -> Vec<u8> {
-        let mut bytes = vec![0xaa; 2 * LARGEST];
+        let mut bytes = vec![0xaa; 2 * MAX_SIZE];
         bytes[..4].copy_from_slice(&size.to_ne_bytes());
         bytes
     }
@@ -176,9 +176,9 @@ mod tests {
     #[test]
     #[cfg_attr(miri, ignore = "takes minutes where every step is interpreted")]
     fn only_sizes_of_some_version_are_taken() {
-        for size in 0..2 * LARGEST {
+        for size in 0..2 * MAX_SIZE {
             let mut bytes = memory(size as u32);
-            let accepted = size == 8 || (16..=LARGEST).contains(&size);
+            let accepted = size == 8 || (16..=MAX_SIZE).contains(&size);
             assert_eq!(init::<Sample>(bytes.as_mut_ptr().cast(), size).is_ok(), accepted, "{size}");
             if accepted {
                 assert_eq!(bytes[..4], (size as u32).to_ne_bytes());

@@ -18,9 +18,9 @@ use super::scene::{luxfer_scene, mesh_cost};
 use super::shared_context::Context;
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
-use crate::fixture::{self, Body, Fixture, Interval, Kind, Known, Lamp, Placing};
 use crate::geometry::{FocalSource, Perspective};
 use crate::image::Image;
+use crate::pendant::{self, Body, Interval, Kind, Known, Lamp, Pendants, Placing};
 use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
 use std::sync::Arc;
 
@@ -115,7 +115,7 @@ pub struct luxfer_pendants_params {
 }
 
 versioned!(luxfer_pendants_params, [160], {
-    let d = fixture::Params::default();
+    let d = pendant::Params::default();
     Self {
         struct_size: 160,
         alike: u32::from(d.alike),
@@ -135,7 +135,7 @@ versioned!(luxfer_pendants_params, [160], {
 });
 
 impl luxfer_pendants_params {
-    fn params(&self) -> Result<fixture::Params> {
+    fn params(&self) -> Result<pendant::Params> {
         if self.reserved != 0 {
             return Err(Error::argument(format!("reserved is {}; it must be 0", self.reserved)));
         }
@@ -144,7 +144,7 @@ impl luxfer_pendants_params {
             return Err(Error::argument("level is 1 and alike is 0; lamps at one height must be alike"));
         }
         let refine = flag(self.refine, "refine")?;
-        Ok(fixture::Params { alike, level, refine, distance: self.ceiling, suspension_error: self.suspension_error })
+        Ok(pendant::Params { alike, level, refine, distance: self.ceiling, suspension_error: self.suspension_error })
     }
 
     fn known(&self) -> Result<Known> {
@@ -287,7 +287,7 @@ versioned!(luxfer_pendant, [REPORT_SIZE], {
     }
 });
 
-const _: () = assert!(LUXFER_MAX_PENDANTS as usize == fixture::MAX_LAMPS);
+const _: () = assert!(LUXFER_MAX_PENDANTS as usize == pendant::MAX_LAMPS);
 /// Largest number of lamps that one call adds to a scene.
 const MAX_PLACES: usize = 1024;
 /// A kind with a lower probability gets LUXFER_DOUBT_KIND. [convention]
@@ -299,7 +299,7 @@ const CLIPPED: f64 = 0.1;
 const HIDDEN: f64 = 0.05;
 
 impl luxfer_pendant {
-    fn new(found: &Fixture, lamp: &Lamp) -> Self {
+    fn new(found: &Pendants, lamp: &Lamp) -> Self {
         let interval = |i: Interval| [i.value, i.low, i.high];
         let mut report = Self {
             profile_count: found.profile.len().min(65) as u32,
@@ -350,7 +350,7 @@ fn body(kind: Kind) -> luxfer_body {
 }
 
 /// Returns the LUXFER_DOUBT_ flags of a lamp.
-fn doubts(found: &Fixture, lamp: &Lamp) -> u32 {
+fn doubts(found: &Pendants, lamp: &Lamp) -> u32 {
     let all = [
         (LUXFER_DOUBT_SIZE, !found.is_metric),
         (LUXFER_DOUBT_KIND, found.probability < SURE),
@@ -401,11 +401,10 @@ pub unsafe extern "C" fn luxfer_pendants_find(
         let (camera, shifted) = &settings.cameras(context, view, photo.image())?;
         let suspensions = points::<2>(suspensions, suspension_count, 0, LUXFER_MAX_PENDANTS as usize, "suspension")?;
         let suspensions = &suspensions.into_iter().map(DVec2::from_array).collect::<Vec<DVec2>>();
-        let input = fixture::Input { camera, shifted, suspensions, known };
+        let input = pendant::Input { camera, shifted, suspensions, known };
         let monitor = context.monitor();
-        let fixtures =
-            context.quick.run(|| fixture::run(photo.image(), mask.image(), &input, &params, monitor.job()))?;
-        let lamps = || fixtures.iter().flat_map(|found| found.lamps.iter().map(move |lamp| (found, lamp)));
+        let groups = context.quick.run(|| pendant::run(photo.image(), mask.image(), &input, &params, monitor.job()))?;
+        let lamps = || groups.iter().flat_map(|found| found.lamps.iter().map(move |lamp| (found, lamp)));
         for (index, (found, lamp)) in lamps().enumerate().take(capacity) {
             Report::new(pendants.wrapping_byte_add(index * size), size)?.set(luxfer_pendant::new(found, lamp));
         }

@@ -19,7 +19,7 @@ pub const MAX_PROFILE_BYTES: usize = 3 << 20;
 
 /// Returns an error if the system cannot provide this many bytes.
 pub fn check(bytes: usize) -> Result<()> {
-    if reserve::has_room(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
+    if reserve::can_allocate(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }
 
 /// Checks that there is enough memory for the crate `image` to decode the pixels of a file, in addition to the picture

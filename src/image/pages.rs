@@ -10,10 +10,10 @@ pub(crate) const HUGE: usize = 2 << 20;
 
 /// Asks the system for huge pages for a buffer, except at its ends, where no whole huge page fits. This is only a
 /// hint, and has an effect on Linux alone.
-pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
+pub(crate) fn prefer_huge<T>(buffer: &[MaybeUninit<T>]) {
     #[cfg(all(target_os = "linux", not(miri)))]
     {
-        let within = room.as_ptr_range();
+        let within = buffer.as_ptr_range();
         let start = (within.start as usize).next_multiple_of(HUGE);
         let end = within.end as usize / HUGE * HUGE;
         if start < end {
@@ -23,7 +23,7 @@ pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
         }
     }
     #[cfg(not(all(target_os = "linux", not(miri))))]
-    let _ = room;
+    let _ = buffer;
 }
 
 /// Returns `len` zeros, or `None` if memory is short. The system provides zeroed memory, and clears each page only
@@ -31,7 +31,7 @@ pub(crate) fn prefer_huge<T>(room: &[MaybeUninit<T>]) {
 pub(crate) fn zeros(len: usize) -> Option<Vec<f32>> {
     let layout = Layout::array::<f32>(len).ok().filter(|layout| layout.size() > 0);
     let Some(layout) = layout else { return (len == 0).then(Vec::new) };
-    // SAFETY: the size of the layout is not 0. The allocation has room for `len` numbers with their alignment, and
+    // SAFETY: the size of the layout is not 0. The allocation has memory for `len` numbers with their alignment, and
     // nothing else refers to it; all bits are 0, which is a valid `f32`.
     unsafe {
         let start = reserve::system(layout, true).cast::<f32>();

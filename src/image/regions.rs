@@ -64,12 +64,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn patches_hang_together_by_sides_and_corners() {
+    fn regions_are_connected_by_sides_and_corners() {
         let rows = ["#...#", ".#..#", ".....", "#.#.."];
         let image = Image::from_fn(5, 4, |x, y| [f32::from(u8::from(rows[y].as_bytes()[x] == b'#'))]).unwrap();
-        let patches = Regions::of(&image).unwrap();
-        assert_eq!(patches.count, 4);
-        let found: Vec<String> = patches.labels.chunks(5).map(|r| r.iter().map(u32::to_string).collect()).collect();
+        let regions = Regions::of(&image).unwrap();
+        assert_eq!(regions.count, 4);
+        let found: Vec<String> = regions.labels.chunks(5).map(|r| r.iter().map(u32::to_string).collect()).collect();
         assert_eq!(found, ["10002", "01002", "00000", "30400"]);
         assert_eq!(Regions::of(&Image::new(3, 2, 3).unwrap()).unwrap().count, 0);
     }
@@ -81,10 +81,10 @@ mod tests {
             for at in (0..29 * 11).step_by(7) {
                 for channel in 0..channels {
                     image.data[at * channels + channel] = 1e-30;
-                    let patches = Regions::of(&image).unwrap();
+                    let regions = Regions::of(&image).unwrap();
                     let found = usize::from(channel < colours);
-                    assert_eq!(patches.count, found, "channel {channel} of {channels}");
-                    assert_eq!(patches.labels.iter().position(|l| *l == 1), (found == 1).then_some(at));
+                    assert_eq!(regions.count, found, "channel {channel} of {channels}");
+                    assert_eq!(regions.labels.iter().position(|l| *l == 1), (found == 1).then_some(at));
                     image.data[at * channels + channel] = -1.0;
                 }
             }

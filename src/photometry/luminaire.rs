@@ -175,11 +175,6 @@ impl Luminaire {
         }
         2.0 * std::f64::consts::PI * total
     }
-
-    /// Efficacy in lumens per watt; `None` if the power is unknown.
-    pub fn efficacy(&self) -> Option<f64> {
-        (self.watts > 0.0).then(|| self.flux() / self.watts)
-    }
 }
 
 /// Computes `∫ I(γ) sin γ dγ` between two angles in radians, for `I` linear between them.

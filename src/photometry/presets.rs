@@ -23,7 +23,7 @@ pub struct Preset {
     pub uniformity: f64,
     /// Minimum colour rendering index.
     pub rendering: f64,
-    /// Minimum mean illuminance of walls and of the ceiling, in lux, with a uniformity of [`SURROUND_UNIFORMITY`]; 0
+    /// Minimum mean illuminance of walls and of the ceiling, in lux, with a uniformity of at least 0.1 (EN 12464-1); 0
     /// if there is no requirement.
     pub walls: f64,
     pub ceiling: f64,
@@ -45,9 +45,6 @@ pub const PRESETS: &[Preset] = &[
     preset(c"library: bookshelves", 2021, [200.0, 19.0, 0.6, 80.0], [0.0, 0.0]),
     preset(c"library: reading areas", 2021, [500.0, 19.0, 0.6, 80.0], [100.0, 50.0]),
 ];
-
-/// Minimum uniformity of walls and ceilings. [convention: EN 12464-1]
-pub const SURROUND_UNIFORMITY: f64 = 0.1;
 
 /// A requirement that is not met.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -55,7 +55,7 @@ impl EmissionLamps {
         Self::numbered(width, height, labels, count)
     }
 
-    /// Makes lamps from a texture: every 8-connected patch of emissive texels is a lamp.
+    /// Makes lamps from a texture: every 8-connected region of emissive texels is a lamp.
     pub fn of_texture(texture: &Image) -> Result<Self> {
         let Regions { labels, count } = Regions::of(texture)?;
         Self::numbered(texture.width, texture.height, labels, count)

@@ -311,7 +311,7 @@ pub(super) fn connection_weight(
     pdf: f32,
     panes: Option<&mut Vec<Pane>>,
 ) -> Vec3 {
-    let weight = light.mis_pdf.map_or(1.0, |d| power_heuristic(d, pdf));
+    let mis_weight = light.mis_pdf.map_or(1.0, |d| power_heuristic(d, pdf));
     let origin = vertex.off_surface(light.direction);
     let (ray, end) = match light.end {
         None => (Ray::new(origin, light.direction), NONE),
@@ -327,7 +327,7 @@ pub(super) fn connection_weight(
     if transmittance != Vec3::ZERO {
         world.lights().count_arrived(light);
     }
-    transmittance * (weight / light.pdf)
+    transmittance * (mis_weight / light.pdf)
 }
 
 /// Adds the emission of the surface that `segment` has hit. If a light sample could also have found this light, the
@@ -344,12 +344,12 @@ fn add_emission<O: Observer>(world: &World, segment: &PathSegment, vertex: &Vert
     if emission == Vec3::ZERO {
         return;
     }
-    let weight = segment.mis.map_or(1.0, |(receiver, pdf)| {
+    let mis_weight = segment.mis.map_or(1.0, |(receiver, pdf)| {
         let distance = vertex.position.distance(receiver.position);
         let light_pdf = lights.surface_pdf(&receiver, index, (emission, uv), direction, distance);
         power_heuristic(pdf, light_pdf)
     });
-    observer.add(lights.emitters.source(index, uv), segment.throughput * weight, emission, Strategy::BsdfSample);
+    observer.add(lights.emitters.source(index, uv), segment.throughput * mis_weight, emission, Strategy::BsdfSample);
 }
 
 /// Adds the environment's radiance along a segment without a hit. The radiance has the MIS weight against light
@@ -360,9 +360,9 @@ fn add_environment<O: Observer>(world: &World, segment: &PathSegment, observer: 
     if emission == Vec3::ZERO {
         return;
     }
-    let weight =
+    let mis_weight =
         segment.mis.map_or(1.0, |(_, pdf)| power_heuristic(pdf, world.lights().environment_pdf(segment.ray.direction)));
-    observer.add(LightSource::Environment, segment.throughput * weight, emission, Strategy::BsdfSample);
+    observer.add(LightSource::Environment, segment.throughput * mis_weight, emission, Strategy::BsdfSample);
 }
 
 /// Returns the reciprocal of each channel; 0 for channels that are not positive.

@@ -130,15 +130,15 @@ impl World {
         self.any_see_through = true;
     }
 
-    /// Makes renders treat all lights alike, whether or not the lights reach the surfaces in view. Tests and benchmarks
-    /// use this function to measure how much learning helps.
-    pub fn disable_learning(&mut self) {
+    /// Makes renders treat all lights alike, whether or not the lights reach the surfaces in view.
+    #[cfg(test)]
+    pub(super) fn disable_learning(&mut self) {
         self.lights.learns = false;
     }
 
-    /// Makes renders trace all rays through the structure of the whole scene, which changes no result. Tests and
-    /// benchmarks use this function to measure how much the structure of the surroundings saves.
-    pub fn disable_vicinity(&mut self) {
+    /// Makes renders trace all rays through the structure of the whole scene, which changes no result.
+    #[cfg(test)]
+    pub(super) fn disable_vicinity(&mut self) {
         self.may_build_vicinity = false;
     }
 

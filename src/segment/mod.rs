@@ -196,10 +196,11 @@ fn propose(input: &Input, params: &Params, job: Job) -> Result<Option<Segmentati
 /// Draws samples of the given channels, then chooses the model and the subset of channels (see [`select::choose`]).
 fn learn(input: &Input, params: &Params, subsets: &[u32], channels: &[usize], job: Job) -> Result<(Samples, Chosen)> {
     let features = input.features;
-    let (samples, probe) = exec::both(|| samples::draw(input, channels, params), || samples::probe(input, channels));
+    let (samples, unlabelled) =
+        exec::both(|| samples::draw(input, channels, params), || samples::unlabelled(input, channels));
     let samples = samples?;
     job.check()?;
-    if !samples.values.iter().chain(&probe).all(|v| v.is_finite()) {
+    if !samples.values.iter().chain(&unlabelled).all(|v| v.is_finite()) {
         let bad = exec::map(features.height, job, |y| classify::count_bad(features.row(y)))?;
         return Err(not_finite(bad.iter().sum()));
     }
@@ -207,7 +208,7 @@ fn learn(input: &Input, params: &Params, subsets: &[u32], channels: &[usize], jo
     let selection_input = SelectionInput {
         samples: &samples,
         subsets: &subsets.iter().map(columns).collect::<Vec<Vec<usize>>>(),
-        probe: &probe,
+        unlabelled: &unlabelled,
         ridge: params.ridge,
     };
     let chosen = select::choose(&selection_input, job)?;

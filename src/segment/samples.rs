@@ -37,8 +37,8 @@ pub struct Samples {
 
 /// Number of parts into which cross-validation splits a stroke.
 pub const PARTS: usize = 4;
-/// Maximum number of pixels that [`probe`] returns.
-const PROBES: usize = 2048;
+/// Maximum number of pixels that [`unlabelled`] returns.
+const MAX_UNLABELLED: usize = 2048;
 
 /// Draws the samples. Where strokes overlap, the later stroke wins.
 pub fn draw(input: &Input, channels: &[usize], params: &Params) -> Result<Samples> {
@@ -160,12 +160,12 @@ pub fn ownership(input: &Input) -> Result<Ownership> {
     Ok(Ownership { positive, negative, contradictory, off_image })
 }
 
-/// Returns the features of up to [`PROBES`] pixels spread over the region to be segmented, `channels.len()` values per
-/// pixel.
-pub fn probe(input: &Input, channels: &[usize]) -> Vec<f64> {
+/// Returns the features of up to [`MAX_UNLABELLED`] pixels spread over the region to be segmented, whether a stroke
+/// covers them or not: `channels.len()` values per pixel.
+pub fn unlabelled(input: &Input, channels: &[usize]) -> Vec<f64> {
     let features = input.features;
     // The step must not divide the width: otherwise only a few columns would be sampled.
-    let step = (features.width * features.height).div_ceil(PROBES) | 1;
+    let step = (features.width * features.height).div_ceil(MAX_UNLABELLED) | 1;
     let step = if features.width % step == 0 && step > 1 { step + 2 } else { step };
     let looked_at = |p: &usize| input.region.is_none_or(|w| w.data[*p] > 0.5);
     (0..features.width * features.height)

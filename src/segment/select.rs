@@ -69,7 +69,7 @@ pub struct SelectionInput<'a> {
     /// Subsets of the features to choose from, as column indices of the samples.
     pub subsets: &'a [Vec<usize>],
     /// Features of pixels spread over the region to be segmented, laid out as `samples.values`.
-    pub probe: &'a [f64],
+    pub unlabelled: &'a [f64],
     pub ridge: f64,
 }
 
@@ -121,13 +121,13 @@ pub fn choose(input: &SelectionInput, job: Job) -> Result<Chosen> {
     };
 
     // For each subset of the features, compute how far the image's pixels lie outside the samples' ellipsoids.
-    let probe = standard.apply(input.probe)?;
+    let unlabelled = standard.apply(input.unlabelled)?;
     let spread = |class: bool| Spread::of(&trial.x, |i| trial.positive[i] == class);
     let (negative, positive) = exec::both(|| spread(false), || spread(true));
     let spreads = [negative, positive];
     let unseen = exec::map(subsets.len(), job.part(0.0, 0.1), |k| {
         let columns = &subsets[k];
-        ellipsoid::mean_unseen(&probe, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
+        ellipsoid::mean_unseen(&unlabelled, columns, &spreads.each_ref().map(|spread| spread.ellipsoid(columns)))
     })?;
 
     let candidate = cheapest(&trial, subsets, &unseen, job.part(0.1, 0.9))?;

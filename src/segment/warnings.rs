@@ -223,7 +223,7 @@ pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Optio
     let planes = [plane.iter().filter(|s| s.positive).chain(beside()).collect(), beside().collect()];
     let compared = planes.map(|plane: Vec<&Stroke>| brighter(features, &lamps, &plane));
     let (share, darkest) = compared.into_iter().flatten().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let message = || format!("{} of the plane is as bright as what is painted as light", percent(1.0 - share));
+    let message = || format!("{} of the plane is as bright as the pixels painted as light", percent(1.0 - share));
     let advice =
         "paint the lamps where they shine; lamps that are off, or shine away from the camera, give no light to copy";
     let warning = Warning::below(Code::DimLamps, share, MIN_BRIGHTER, message, advice);

@@ -12,6 +12,13 @@ const MAX_SIDE: usize = 1400;
 /// Standard deviations of the blur before the search, in pixels of the reduced image. These scales find marks of four
 /// to about forty pixels across. [convention: a scale space in octaves]
 const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
+/// A saddle is compared with all positions within `NEIGHBOURHOOD` times the deviation of the blur. The quadrants around
+/// it must show on two circles; `CIRCLES` has their radii in units of this deviation. [bench constants:sheet]
+const NEIGHBOURHOOD: f32 = 1.5;
+const CIRCLES: [f64; 2] = [1.6, 2.2];
+/// Minimum distance between two candidates, in pixels of the reduced image. Several scales find the same mark; of
+/// candidates that are closer, only the strongest is kept. [bench constants:sheet]
+const MIN_DISTANCE: f64 = 6.0;
 /// Maximum number of candidates for marks; the strongest ones are kept.
 const MAX_CANDIDATES: usize = 24;
 /// Minimum share of the second harmonic (two periods per turn) in the variance of brightness along a circle around a
@@ -47,17 +54,15 @@ pub fn candidates(grey: &Image, job: Job) -> Result<Vec<Candidate>> {
         let blurred = pyramid::blur(&small, sigma, job.part(0.0, 0.5))?;
         for (x, y) in saddles(&blurred, sigma, job.part(0.5, 1.0))? {
             let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-            let strength =
-                quadrants(&small, at, 1.6 * f64::from(sigma)).min(quadrants(&small, at, 2.2 * f64::from(sigma)));
+            let [inner, outer] = CIRCLES.map(|radius| quadrants(&small, at, radius * f64::from(sigma)));
+            let strength = inner.min(outer);
             if strength > 0.0 {
                 found.push(Candidate { at: at * scale, strength });
             }
         }
     }
-    // Among candidates closer than six pixels of the reduced image, keep the strongest: several scales find the same
-    // mark.
     found.sort_by(|a, b| b.strength.total_cmp(&a.strength));
-    let apart = 6.0 * scale.max_element();
+    let apart = MIN_DISTANCE * scale.max_element();
     let mut kept: Vec<Candidate> = Vec::new();
     for candidate in found {
         if kept.iter().all(|k| k.at.distance(candidate.at) > apart) && kept.len() < MAX_CANDIDATES {
@@ -85,7 +90,7 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
             row[x] = (xy * xy - xx * yy) * sigma.powi(4);
         }
     })?;
-    let radius_in_pixels = (1.5 * sigma).ceil() as usize;
+    let radius_in_pixels = (NEIGHBOURHOOD * sigma).ceil() as usize;
     let rows = exec::map(height, job, |y| {
         let mut row = Vec::new();
         for x in 0..width {

@@ -6,7 +6,7 @@
 //! centre of a plain disk would no longer be the centre of its outline. Ten marks surround the picture: at the corners,
 //! at the midpoints of the sides, and two more that determine the orientation of the sheet. Six marks suffice.
 //!
-//! `page` lays out the page, [`print()`] draws it, `detect` finds marks in a photo, `fit` identifies them, and
+//! `page` arranges the page, [`print()`] draws it, `detect` finds marks in a photo, `fit` identifies them, and
 //! [`align`] resamples the photo and removes uneven illumination, which it measures on the white of the marks.
 //!
 //! Not modelled: curved paper and lens distortion; `Aligned::residual` reveals both.

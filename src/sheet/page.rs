@@ -1,4 +1,4 @@
-//! The layout of the page: positions of the picture and of the marks.
+//! The arrangement of the page: positions of the picture and of the marks.
 
 use super::params::Params;
 use crate::error::{Error, Result};
@@ -26,7 +26,7 @@ const MARKS: [[f64; 2]; 10] = [
     [0.0, 0.32],
 ];
 
-/// The layout of the page, in page pixels.
+/// The arrangement of the page, in page pixels.
 pub struct Page {
     pub width: usize,
     pub height: usize,

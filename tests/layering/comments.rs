@@ -8,6 +8,20 @@ const MAX_CHARACTERS: usize = 120;
 /// The folders with hand-written sources, and include with the generated headers.
 pub const FOLDERS: [&str; 8] = ["src", "include", "benches", "tests", "examples_c", "bindings", "fuzz", "docs"];
 
+/// The hand-written files beside these folders whose comments are checked.
+pub const ROOT_FILES: [&str; 10] = [
+    "Cargo.toml",
+    "Makefile",
+    "CMakeLists.txt",
+    "mkdocs.yml",
+    ".ci/run",
+    "deny.toml",
+    "clippy.toml",
+    "rustfmt.toml",
+    "cbindgen.toml",
+    "build.rs",
+];
+
 /// Folders of built files and of packages, and generated files.
 pub const SKIPPED: [&str; 9] =
     ["node_modules", "target", "static", "build", "out", "corpus", "artifacts", "_abi.py", "types.py"];
@@ -16,7 +30,8 @@ pub const SKIPPED: [&str; 9] =
 pub fn long_comments(path: &Path, text: &str) -> Vec<usize> {
     let marks: &[&str] = match path.extension().and_then(|e| e.to_str()) {
         Some("rs" | "c" | "h" | "hpp" | "cpp" | "ts" | "js" | "css") => &["//", "/*", "*"],
-        Some("py" | "sh" | "mk" | "toml" | "txt" | "in") => &["#"],
+        Some("py" | "sh" | "mk" | "toml" | "txt" | "in" | "yml") => &["#"],
+        None if path.ends_with("Makefile") || path.ends_with(".ci/run") => &["#"],
         _ => return Vec::new(),
     };
     let is_python = path.extension().is_some_and(|e| e == "py");

@@ -1,4 +1,4 @@
-//! The composition of a texture: the plan of the positions of all lamps and patches, from which texels are rendered.
+//! The composition of a texture: the positions of all lamps and patches, from which texels are rendered.
 //!
 //! A composition holds positions, but no texels. Any tile of the texture can be rendered from it, so rendering needs
 //! the memory of one tile only, whatever the size of the texture. The colour of a texel does not depend on other
@@ -21,7 +21,7 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::DVec2;
 
-/// The plan of a texture of `width` × `height` texels: the positions of its lamps and patches.
+/// The composition of a texture of `width` × `height` texels: the positions of its lamps and patches.
 pub struct Composition {
     pub width: usize,
     pub height: usize,
@@ -102,7 +102,7 @@ impl Composition {
         self.layers.iter().map(|layer| layer.exemplar.lamps().count()).sum()
     }
 
-    /// Renders a tile of the texture, and its mask, from the exemplars for which the composition was planned.
+    /// Renders a tile of the texture, and its mask, from the exemplars of which the composition was made.
     ///
     /// Errors (`InvalidArgument`): the tile is empty or reaches beyond the texture; the number or the sizes of the
     /// exemplars have changed.
@@ -175,19 +175,21 @@ impl Composition {
         render::run(&blend, &sources, &self.bands, tile, lights, job)
     }
 
-    /// Checks that the number and the sizes of the exemplars are those for which the composition was planned.
+    /// Checks that the number and the sizes of the exemplars are those of which the composition was made.
     pub(in crate::emission) fn check_exemplars(&self, input: &Input, styles: &[Style]) -> Result<()> {
         if styles.len() + 1 != self.layers.len() {
-            let (given, planned) = (styles.len() + 1, self.layers.len());
-            return Err(Error::argument(format!("there are {given} exemplars; the composition was made of {planned}")));
+            let (given, expected) = (styles.len() + 1, self.layers.len());
+            return Err(Error::argument(format!(
+                "there are {given} exemplars; the composition was made of {expected}"
+            )));
         }
         for (layer, (input, _)) in self.layers.iter().zip(exemplars(input, 1.0, styles)) {
             input.check()?;
-            let (size, planned) = ([input.unwarped.width, input.unwarped.height], &layer.exemplar);
-            if size != [planned.width, planned.height] {
+            let (size, expected) = ([input.unwarped.width, input.unwarped.height], &layer.exemplar);
+            if size != [expected.width, expected.height] {
                 return Err(Error::argument(format!(
                     "the unwarped image is {} x {}; the composition was made of one of {} x {}",
-                    size[0], size[1], planned.width, planned.height
+                    size[0], size[1], expected.width, expected.height
                 )));
             }
         }

@@ -1,4 +1,4 @@
-//! Assembles the texture: plans the positions of lamps and patches (the composition), renders the texels, and lists
+//! Assembles the texture: chooses the positions of lamps and patches (the composition), renders the texels, and lists
 //! the lamps.
 
 pub mod bands;

@@ -18,7 +18,7 @@ use crate::image::{Image, try_collect};
 use crate::job::Job;
 
 /// The dark strip between two parts of a lamp is at most this share of the lamp's side across the strip.
-/// [bench photos:real] shows no difference between 0.1 and 0.4.
+/// [bench photos:real] (docs/notes/photos.md, "Lamps that protrude, and lamps in parts").
 const MAX_STRIP: f64 = 0.2;
 /// A light counts as rectangular if it covers at least this share of its bounding box. For two parts of a lamp, this is
 /// the box around both, without the strip between them. A disc covers only π/4 = 0.79 of its box; a rectangle with

@@ -9,6 +9,9 @@ const MAX_LAMPS: usize = 400;
 /// A pair of lamps takes part in the fit if the vector between them differs from a lattice vector by less than this
 /// share of the first period's length. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
+/// The passes of the fit use pairs whose vector has at most this number of lattice steps along either basis vector.
+/// Steps are whole numbers; a limit halfway between two of them is not affected by rounding. [rounding]
+const MAX_STEPS: [f64; 3] = [1.5, 3.5, f64::INFINITY];
 /// If the pattern does not change along an axis, the search for lattices returns a shift of one pixel along the axis in
 /// place of a period. A basis vector that is at most this long, in unwarped pixels, is such a shift. [rounding]
 pub const MAX_UNCHANGING_LENGTH: f64 = 1.5;
@@ -49,7 +52,7 @@ pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2
     let all: Vec<_> = exemplar.lamps().collect();
     let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();
     let mut basis = basis;
-    for max_step in [1.5, 3.5, f64::INFINITY] {
+    for max_step in MAX_STEPS {
         let inverse = DMat2::from_cols(basis[0], basis[1]).inverse();
         if !inverse.is_finite() {
             break;

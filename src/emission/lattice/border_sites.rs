@@ -12,8 +12,8 @@ use crate::error::Result;
 use glam::{DMat2, DVec2};
 
 /// Two lamps belong to one site if the vector between them differs from a lattice vector by less than this. The
-/// difference is measured in lattice coordinates, in which each period has length 1. No figure changes between half and
-/// twice this value. [bench emission:real]
+/// difference is measured in lattice coordinates, in which each period has length 1. [bench emission:real]
+/// (docs/notes/constants.md)
 const MAX_OFF_SITE: f64 = 0.2;
 /// The dark places of a site are excluded only if at least this share of its completely visible places has a lamp.
 /// Otherwise the site is usually dark, and its dark places may stay. [convention]

@@ -12,6 +12,10 @@ use glam::DVec2;
 /// For example, if each window has three panes side by side, the period of the windows is the distance from a pane to
 /// the third one after it. [convention]
 const ORDERS: usize = 3;
+/// Two lamps are in one row if their centres differ across the row by less than this share of the sum of their sizes,
+/// and neighbours if their centres differ along the row by more. At 0.5, lamps that only touch side by side would be in
+/// one row; at 0, blur would part the lamps of a row. The value lies in the middle. [convention]
+const MAX_OFF_ROW: f64 = 0.25;
 
 /// Proposes lattices along the axes: every pair of a period along x and a period along y.
 pub fn lattices([across, down]: &[Vec<f64>; 2]) -> Vec<[DVec2; 2]> {
@@ -41,7 +45,7 @@ pub fn periods(lamps: &[MeasuredLamp]) -> [Vec<f64>; 2] {
 fn distance(lamps: &[MeasuredLamp], lamp: &MeasuredLamp, axis: usize, order: usize) -> Option<f64> {
     let offset = |other: &MeasuredLamp| other.centre - lamp.centre;
     let is_beside = |other: &&MeasuredLamp| {
-        let max_offset = 0.25 * (lamp.size + other.size);
+        let max_offset = MAX_OFF_ROW * (lamp.size + other.size);
         offset(other)[1 - axis].abs() < max_offset[1 - axis] && offset(other)[axis] > max_offset[axis]
     };
     let mut all: Vec<f64> = lamps.iter().filter(is_beside).map(|other| offset(other)[axis]).collect();

@@ -52,7 +52,7 @@ fn lines_meet_where_the_texture_repeats() {
 }
 
 #[test]
-fn a_plan_lists_lines_and_whatever_follows_the_patches() {
+fn a_composition_lists_lines_and_whatever_follows_the_patches() {
     let net = || Design::new(240, 220, |x, y| (x - 5.0).rem_euclid(40.0) < 6.0 || (y - 9.0).rem_euclid(36.0) < 6.0);
     let mixed = Design::new(240, 220, |x, y| {
         let (u, v) = (x.rem_euclid(40.0), y.rem_euclid(40.0));
@@ -69,10 +69,10 @@ fn a_plan_lists_lines_and_whatever_follows_the_patches() {
         ("lamps as the patches cut them", lamps, Params { whole_lamps: false, ..whole }),
     ] {
         let job = Monitor::default();
-        let plan = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
-        let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();
-        let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&plan, i).unwrap()).collect();
-        assert!(list.get(&plan, list.count()).is_none());
+        let composition = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
+        let list = LampList::new(&composition, &exemplar.input(), &[], job.job()).unwrap();
+        let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&composition, i).unwrap()).collect();
+        assert!(list.get(&composition, list.count()).is_none());
         assert!((listed.iter().map(|l| l.flux_share).sum::<f64>() - 1.0).abs() < 1e-6, "{name}");
         let shown = exemplar.run(&params).unwrap().luminaires;
         assert_eq!(listed.len(), shown.len(), "{name}");

@@ -183,7 +183,7 @@ fn what_the_border_cuts_ends_at_the_border() {
     assert!((lamp.size - DVec2::new(20.0, 13.25)).abs().max_element() < 0.1, "{}", lamp.size);
     // The lamp list of the composition must give an equal outline.
     let job = Monitor::default();
-    let plan = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
-    let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();
-    assert_eq!((list.count(), list.get(&plan, 0).unwrap().outline), (1, lamp.outline.clone()));
+    let composition = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
+    let list = LampList::new(&composition, &exemplar.input(), &[], job.job()).unwrap();
+    assert_eq!((list.count(), list.get(&composition, 0).unwrap().outline), (1, lamp.outline.clone()));
 }

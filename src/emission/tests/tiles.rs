@@ -19,14 +19,14 @@ fn tiles_have_the_bits_of_the_whole_in_any_order() {
     ] {
         let params = Params { width: 310, height: 290, ..params };
         let whole = exemplar.run(&params).unwrap();
-        let plan = Composition::new(&exemplar.input(), &[], &params, Monitor::default().job()).unwrap();
+        let composition = Composition::new(&exemplar.input(), &[], &params, Monitor::default().job()).unwrap();
         let mut tiles: Vec<Tile> = (0..12)
             .map(|i| Tile { x: i % 3 * 110, y: i / 3 * 77, width: 90 + 20 * usize::from(i % 3 < 2), height: 77 })
             .map(|t| Tile { height: t.height.min(290 - t.y), ..t })
             .collect();
         tiles.push(Tile { x: 200, y: 133, width: 1, height: 1 });
         for (n, tile) in tiles.into_iter().rev().enumerate() {
-            let render = || plan.tile(&exemplar.input(), &[], tile, Monitor::default().job()).unwrap();
+            let render = || composition.tile(&exemplar.input(), &[], tile, Monitor::default().job()).unwrap();
             let (texture, mask) = Pool::new(1 + n % 3).unwrap().run(render);
             for y in 0..tile.height {
                 let start = (tile.y + y) * 310 + tile.x;
@@ -45,19 +45,19 @@ fn tiles_have_the_bits_of_the_whole_in_any_order() {
 fn tiles_that_are_no_part_of_the_texture_are_refused() {
     let exemplar = Design::new(100, 90, grid(33.0, 29.0, 12.0, 9.0));
     let params = Params { width: 200, height: 150, ..Params::default() };
-    let plan = Composition::new(&exemplar.input(), &[], &params, Monitor::default().job()).unwrap();
+    let composition = Composition::new(&exemplar.input(), &[], &params, Monitor::default().job()).unwrap();
     for (x, y, width, height) in [(0, 0, 0, 1), (0, 0, 201, 1), (150, 0, 51, 1), (0, 150, 1, 1), (usize::MAX, 1, 2, 2)]
     {
         let tile = Tile { x, y, width, height };
-        let error = plan.tile(&exemplar.input(), &[], tile, Monitor::default().job()).unwrap_err();
+        let error = composition.tile(&exemplar.input(), &[], tile, Monitor::default().job()).unwrap_err();
         assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains("200 x 150"), "{}", error.message);
     }
     let other = Design::new(90, 100, grid(33.0, 29.0, 12.0, 9.0));
-    assert!(plan.tile(&other.input(), &[], plan.whole(), Monitor::default().job()).is_err());
+    assert!(composition.tile(&other.input(), &[], composition.whole(), Monitor::default().job()).is_err());
 }
 
 #[test]
-fn a_plan_lists_the_lamps_that_its_texture_shows() {
+fn a_composition_lists_the_lamps_that_its_texture_shows() {
     let lattice = || Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
     let round = Design::new(200, 180, |x, y| (x.rem_euclid(40.0) - 20.0).hypot(y.rem_euclid(40.0) - 20.0) < 9.0);
     let whole_pixels = Params { width: 310, height: 290, ..Params::default() };
@@ -70,10 +70,10 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
         (lattice(), Params { width: 110, height: 90, scale: 1.1, ..whole_pixels }),
     ] {
         let job = Monitor::default();
-        let plan = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
-        let list = LampList::new(&plan, &exemplar.input(), &[], job.job()).unwrap();
-        let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&plan, i).unwrap()).collect();
-        assert!(list.get(&plan, list.count()).is_none());
+        let composition = Composition::new(&exemplar.input(), &[], &params, job.job()).unwrap();
+        let list = LampList::new(&composition, &exemplar.input(), &[], job.job()).unwrap();
+        let listed: Vec<Luminaire> = (0..list.count()).map(|i| list.get(&composition, i).unwrap()).collect();
+        assert!(list.get(&composition, list.count()).is_none());
         let shown = exemplar.run(&params).unwrap().luminaires;
         // `listed` or `shown` alone may contain a sliver of a lamp at the border. So compare only lamps of more than 8
         // texels.
@@ -106,7 +106,7 @@ fn a_plan_lists_the_lamps_that_its_texture_shows() {
 }
 
 #[test]
-fn a_plan_of_blended_styles_lists_the_lamps_of_each() {
+fn a_composition_of_blended_styles_lists_the_lamps_of_each() {
     let exemplar = |side: f64| {
         Design::new(280, 280, move |x, y| {
             (x.rem_euclid(40.0) - 20.0).abs().max((y.rem_euclid(40.0) - 20.0).abs()) < side / 2.0
@@ -117,18 +117,18 @@ fn a_plan_of_blended_styles_lists_the_lamps_of_each() {
     let params = Params { width: 800, height: 600, ..Params::default() };
     let styles = [Style { input: large.input(), scale: 1.0, weights: &ramp }];
     let job = Monitor::default();
-    let plan = Composition::new(&small.input(), &styles, &params, job.job()).unwrap();
-    let list = LampList::new(&plan, &small.input(), &styles, job.job()).unwrap();
+    let composition = Composition::new(&small.input(), &styles, &params, job.job()).unwrap();
+    let list = LampList::new(&composition, &small.input(), &styles, job.job()).unwrap();
     let shown = blend(&small.input(), &styles, &params, job.job()).unwrap().luminaires;
     let areas = |lamps: &mut dyn Iterator<Item = f64>| {
         let mut areas: Vec<f64> = lamps.collect();
         areas.sort_by(f64::total_cmp);
         areas
     };
-    let listed = areas(&mut (0..list.count()).map(|i| list.get(&plan, i).unwrap().area));
+    let listed = areas(&mut (0..list.count()).map(|i| list.get(&composition, i).unwrap().area));
     let shown = areas(&mut shown.iter().map(|l| l.area));
     assert!(listed.len() == shown.len() && listed.iter().zip(&shown).all(|(a, b)| (a - b).abs() < 1e-9));
     // The lamps have 8² = 64 and 18² = 324 pixels. Noise of up to 0.1 in the light mask changes the areas slightly.
     assert!((listed[0] / 64.0 - 1.0).abs() < 0.02 && (listed[listed.len() - 1] / 324.0 - 1.0).abs() < 0.01);
-    assert!(LampList::new(&plan, &small.input(), &[], job.job()).is_err());
+    assert!(LampList::new(&composition, &small.input(), &[], job.job()).is_err());
 }

@@ -63,8 +63,8 @@ impl Default for Params {
 pub struct Output {
     pub image: Image,
     /// Half-width of the 95 % interval of each pixel's radiance, per channel, bias included; infinite where a variance
-    /// is unknown. Measured in rooms with 4 to 256 paths per pixel, the intervals contain the truth for 93 % to 98 % of
-    /// the pixels. The coverage is lower along the edges of surfaces.
+    /// is unknown. Along the edges of surfaces, fewer than 95 % of the intervals contain the truth
+    /// (docs/notes/filter.md).
     pub interval: Image,
     /// Estimated error, remaining noise and bias together: root mean square over pixels and channels, relative to the
     /// mean of the image. Infinite if a variance is unknown.

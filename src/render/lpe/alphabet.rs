@@ -34,11 +34,11 @@ pub struct Alphabet {
     environment: u32,
 }
 
-/// The lamps of an emission texture: each connected patch of emissive texels has its own light event.
+/// The lamps of an emission texture: each connected region of emissive texels has its own light event.
 struct LampEvents {
     texture: Arc<LampTexture>,
-    /// Indices in [`Alphabet::lights`]: first of the light event of the texels outside all patches, then of the light
-    /// event of each patch.
+    /// Indices in [`Alphabet::lights`]: first of the light event of the texels outside all regions, then of the light
+    /// event of each region.
     lights: Vec<u32>,
 }
 

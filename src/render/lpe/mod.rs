@@ -21,7 +21,7 @@
 //!
 //! The labels of an emissive surface are the names of its object and material. Punctual lights are called `light0`,
 //! `light1`, ... in the order of the scene, and the environment is called `environment`. `Name#0`, `Name#1`, ... are
-//! the lamps in the emission texture of the object or material Name: its connected patches, in the order of their
+//! the lamps in the emission texture of the object or material Name: its connected regions, in the order of their
 //! first texels.
 //!
 //! If an event has several labels, all must match: `<RD'Floor''Wood'>`. A label that does not exist in the scene is an

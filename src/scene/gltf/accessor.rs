@@ -103,7 +103,8 @@ fn find<'a>(file: &'a File, index: Index<accessor::Accessor>) -> Result<&'a acce
     file.root.get(index).ok_or_else(|| missing("accessor", index.value(), file.root.accessors.len()))
 }
 
-fn layout(accessor: &accessor::Accessor) -> Result<(ComponentType, usize)> {
+/// Returns how an accessor stores an element: the type of its components, and their number.
+fn storage(accessor: &accessor::Accessor) -> Result<(ComponentType, usize)> {
     match (&accessor.component_type, &accessor.type_) {
         (Checked::Valid(kind), Checked::Valid(shape)) => {
             let components = match shape {
@@ -127,13 +128,13 @@ pub fn count(file: &File, index: Index<accessor::Accessor>) -> Result<u64> {
 
 /// Returns the number of components of an accessor's elements.
 pub fn components(file: &File, index: Index<accessor::Accessor>) -> Result<usize> {
-    Ok(layout(find(file, index)?)?.1)
+    Ok(storage(find(file, index)?)?.1)
 }
 
 /// If an accessor holds normalised integers, returns the integer that represents 1; otherwise returns `None`.
 pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f32>> {
     let accessor = find(file, index)?;
-    let (kind, _) = layout(accessor)?;
+    let (kind, _) = storage(accessor)?;
     Ok((accessor.normalized && kind != ComponentType::F32).then(|| largest_of(kind)))
 }
 
@@ -145,7 +146,7 @@ pub fn vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) ->
 
 fn read_vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<[f32; N]>> {
     let accessor = find(file, index)?;
-    let (kind, components) = layout(accessor)?;
+    let (kind, components) = storage(accessor)?;
     if components != N {
         return Err(Error::format(format!("it has {components} components where {N} are expected")));
     }
@@ -198,7 +199,7 @@ fn sparse_parts<'a>(
 pub fn indices(file: &File, index: Index<accessor::Accessor>) -> Result<Vec<u32>> {
     let read = || {
         let accessor = find(file, index)?;
-        let (kind, components) = layout(accessor)?;
+        let (kind, components) = storage(accessor)?;
         let (Some(view), 1) = (accessor.buffer_view, components) else {
             return Err(Error::format("indices must be scalars in a buffer view"));
         };

@@ -25,7 +25,7 @@ ARTWORKS = ("pen", "stipple", "paint")
 EXTRAS = ("normals", "edges", "materials", "caustics")
 PRESETS = ("full", "fast", "preview")
 #: Maximum side of an artwork in pixels: the exemplar is rendered at the size of the artwork.
-LONGEST = 2048
+MAX_SIDE = 2048
 #: Guide error above which a warning says that the exemplar hardly contains the light of the target.
 #: [judged on 2 scenes]
 POOR = 0.25
@@ -146,9 +146,9 @@ def exemplar(context: Context, args: argparse.Namespace, console: Console) -> tu
         return source.demo_artwork(style), source
     artwork = files.load_image(context, args.artwork)
     width, height, _ = artwork.size
-    if max(width, height) > LONGEST:
+    if max(width, height) > MAX_SIDE:
         raise usage(
-            f"ARTWORK: {args.artwork} has {width} x {height} pixels; at most {LONGEST} a side, so scale it down"
+            f"ARTWORK: {args.artwork} has {width} x {height} pixels; at most {MAX_SIDE} a side, so scale it down"
         )
     return artwork, guides(context, args.exemplar, args, console, (width, height), None, title)
 

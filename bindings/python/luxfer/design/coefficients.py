@@ -32,8 +32,8 @@ if TYPE_CHECKING:
     from .observers import Observers
     from .rooms import Room
 
-#: Spacing of the places in metres, and largest number of them along a side. [convention]
-SPACING, MOST = 0.5, 16
+#: Spacing of the places in metres, and maximum number of them along a side. [convention]
+SPACING, MAX_PLACES = 0.5, 16
 #: Points of an area at which its light is measured. [convention]
 POINTS = 16
 #: Paths for each eye: the light that is not direct is a difference, and so needs more of them. [convention]
@@ -212,7 +212,7 @@ def _places(side: float, half: float) -> NDArray[np.float64]:
     """Places along a side at which an opening of that half length fits; the middle if it does not."""
     if side <= 2 * half:
         return np.array([side / 2])
-    count = min(MOST, max(2, 1 + math.ceil((side - 2 * half) / SPACING)))
+    count = min(MAX_PLACES, max(2, 1 + math.ceil((side - 2 * half) / SPACING)))
     return np.linspace(half, side - half, count)
 
 

@@ -1,4 +1,4 @@
-//! Benchmark of fixtures: bodies of twelve forms seen by random cameras, with noise of 0.3 pixels on their outlines and
+//! Benchmark of pendants: bodies of twelve forms seen by random cameras, with noise of 0.3 pixels on their outlines and
 //! of one pixel on their suspensions. It prints the share of right kinds, the errors of profile and drop, the share of
 //! 95 % intervals that hold the truth, and the seconds per lamp.
 //!
@@ -6,17 +6,17 @@
 
 mod harness;
 
-#[path = "fixtures/bodies.rs"]
+#[path = "pendants/bodies.rs"]
 mod bodies;
-#[path = "fixtures/rendered.rs"]
+#[path = "pendants/rendered.rs"]
 mod rendered;
 
 use bodies::{BODIES, Body, Case};
 use glam::DVec2;
 use harness::{Clock, Table, figure, quantile, time};
 use luxfer::exec::{self, Pool};
-use luxfer::fixture::{self, Fixture, Input, Interval, Known, Params};
 use luxfer::job::Monitor;
+use luxfer::pendant::{self, Input, Interval, Known, Params, Pendants};
 use rendered::{Setup, photograph};
 
 /// Seed of the cameras.
@@ -66,7 +66,7 @@ fn outcome(body: &Body, number: usize) -> Outcome {
     let input = Input { camera: &case.shot.camera, shifted: &[], suspensions: &hooks, known: Known::NoLength };
     let params = Params { distance: case.ceiling.max(0.01), ..Params::default() };
     let outlines = [case.outline.clone()];
-    let run = || fixture::from_outlines(&outlines, &input, &params, Monitor::default().job());
+    let run = || pendant::from_outlines(&outlines, &input, &params, Monitor::default().job());
     let (seconds, found) = time(Clock::Thread, run);
     let Ok(found) = found.map(|mut all| all.remove(0)) else {
         return Outcome { is_right: false, profile: 100.0, drop: None, aspect: false, seconds };
@@ -85,7 +85,7 @@ fn outcome(body: &Body, number: usize) -> Outcome {
 }
 
 /// Returns the root mean square error of the radius as a share of the height, with the middles at equal heights.
-fn profile_error(found: &Fixture, body: &Body, diameter: f64) -> f64 {
+fn profile_error(found: &Pendants, body: &Body, diameter: f64) -> f64 {
     let height = found.profile.last().map_or(0.0, |v| v.y);
     let radius = |y: f64| {
         let piece = found.profile.windows(2).find(|v| v[0].y <= y && y <= v[1].y && v[1].y > v[0].y);
@@ -126,7 +126,7 @@ fn of_rendering(body: &Body, name: &str, setup: &Setup) -> Vec<String> {
     let is_lit = |x: usize| (0..shot.mask.height).any(|y| shot.mask.pixel(x, y)[0] > 0.5);
     let width = (0..shot.mask.width).filter(|x| is_lit(*x)).count();
     let head = [body.name.to_string(), name.to_string(), width.to_string()];
-    let found = match fixture::run(&shot.photo, &shot.mask, &input, &params, Monitor::default().job()) {
+    let found = match pendant::run(&shot.photo, &shot.mask, &input, &params, Monitor::default().job()) {
         Ok(mut found) => found.remove(0),
         Err(error) => return head.into_iter().chain([error.message]).collect(),
     };
@@ -175,13 +175,13 @@ fn figures(all: &[Outcome]) {
     let profiles = values(all, |o| Some(o.profile));
     let drops = values(all, |o| o.drop.map(|d| d.0));
     let seconds = values(all, |o| Some(o.seconds));
-    figure("fixtures.kind", share(all.iter().map(|o| o.is_right)), "% right");
-    figure("fixtures.profile", quantile(&profiles, 0.5), "% of the height, median");
-    figure("fixtures.profile.p90", quantile(&profiles, 0.9), "% of the height, 90th percentile");
-    figure("fixtures.drop", quantile(&drops, 0.5), "%, median");
-    figure("fixtures.drop.p90", quantile(&drops, 0.9), "%, 90th percentile");
-    figure("fixtures.coverage", share(all.iter().filter_map(|o| o.drop).map(|d| d.1)), "% of intervals of the drop");
-    figure("fixtures.coverage.aspect", share(all.iter().map(|o| o.aspect)), "% of intervals of height / diameter");
-    figure("fixtures.seconds", quantile(&seconds, 0.5), "s per lamp, median");
-    figure("fixtures.seconds.worst", quantile(&seconds, 1.0), "s per lamp");
+    figure("pendants.kind", share(all.iter().map(|o| o.is_right)), "% right");
+    figure("pendants.profile", quantile(&profiles, 0.5), "% of the height, median");
+    figure("pendants.profile.p90", quantile(&profiles, 0.9), "% of the height, 90th percentile");
+    figure("pendants.drop", quantile(&drops, 0.5), "%, median");
+    figure("pendants.drop.p90", quantile(&drops, 0.9), "%, 90th percentile");
+    figure("pendants.coverage", share(all.iter().filter_map(|o| o.drop).map(|d| d.1)), "% of intervals of the drop");
+    figure("pendants.coverage.aspect", share(all.iter().map(|o| o.aspect)), "% of intervals of height / diameter");
+    figure("pendants.seconds", quantile(&seconds, 0.5), "s per lamp, median");
+    figure("pendants.seconds.worst", quantile(&seconds, 1.0), "s per lamp");
 }

@@ -1,16 +1,16 @@
 //! Bodies of lamps from outlines and masks of known bodies: kinds, sizes, intervals, meshes and bad input.
 
-#[path = "../benches/fixtures/bodies.rs"]
+#[path = "../benches/pendants/bodies.rs"]
 #[allow(dead_code)]
 mod bodies;
 
 use bodies::{BODIES, Body, Case, Shot};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use luxfer::error::{ErrorKind, Result};
-use luxfer::fixture::{self, Fixture, Input, Known, Params, Placing};
 use luxfer::geometry::Perspective;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
+use luxfer::pendant::{self, Input, Known, Params, Pendants, Placing};
 use luxfer::rng::Rng;
 use luxfer::scene::Scene;
 
@@ -18,9 +18,9 @@ fn body(name: &str) -> &'static Body {
     BODIES.iter().find(|b| b.name == name).unwrap()
 }
 
-fn fit(shot: &Shot, outlines: &[Vec<DVec2>], hooks: &[DVec2], known: Known, params: Params) -> Result<Vec<Fixture>> {
+fn fit(shot: &Shot, outlines: &[Vec<DVec2>], hooks: &[DVec2], known: Known, params: Params) -> Result<Vec<Pendants>> {
     let input = Input { camera: &shot.camera, shifted: &[], suspensions: hooks, known };
-    fixture::from_outlines(outlines, &input, &params, Monitor::default().job())
+    pendant::from_outlines(outlines, &input, &params, Monitor::default().job())
 }
 
 /// Whether a value agrees with the truth within a share of it.
@@ -147,7 +147,7 @@ fn intervals_hold_errors_of_the_camera() {
         for (held, shifted) in held.iter_mut().zip([&[][..], &cameras[..]]) {
             let input = Input { camera: &camera, shifted, suspensions: &[hook], known: Known::NoLength };
             let outlines = [case.outline.clone()];
-            let found = fixture::from_outlines(&outlines, &input, &params, Monitor::default().job()).unwrap();
+            let found = pendant::from_outlines(&outlines, &input, &params, Monitor::default().job()).unwrap();
             let drop = found[0].lamps[0].drop;
             *held += usize::from(drop.low < case.drop(body) && case.drop(body) < drop.high);
         }
@@ -216,7 +216,7 @@ fn a_mask_gives_the_body_and_its_radiance() {
     let input = Input { camera: &shot.camera, shifted: &[], suspensions: &[], known: Known::Diameter(0.4) };
     let run = |refine| {
         let params = Params { refine, ..Params::default() };
-        fixture::run(&photo, &mask, &input, &params, Monitor::default().job()).unwrap().remove(0)
+        pendant::run(&photo, &mask, &input, &params, Monitor::default().job()).unwrap().remove(0)
     };
     let [rough, fine] = [false, true].map(run);
     for found in [&rough, &fine] {
@@ -270,7 +270,7 @@ fn bad_input_is_refused_with_advice() {
     let photo = Image::new(64, 64, 3).unwrap();
     let input = Input { camera: &shot.camera, shifted: &[], suspensions: &[], known: Known::NoLength };
     let run =
-        |mask: &Image| fixture::run(&photo, mask, &input, &Params::default(), Monitor::default().job()).unwrap_err();
+        |mask: &Image| pendant::run(&photo, mask, &input, &Params::default(), Monitor::default().job()).unwrap_err();
     let painted =
         |inside: &dyn Fn(usize, usize) -> bool| run(&Image::from_fn(64, 64, |x, y| [f32::from(inside(x, y))]).unwrap());
     let cases = [
