@@ -1,10 +1,10 @@
 //! Benchmark of stylisation on the real pair in the test data (ebsynth's StyLit example, 1200 × 912, four guides).
 //! Arguments select sections: time and quality of the presets (`presets`); the time of an update (`update`); time and
-//! memory up to 70 megapixels (`sizes`); comparison with plain EM and ebsynth (`baselines`); other methods in the same
-//! engine (`methods`); quality against time for every setting (`knobs`); the final votes on drawn styles and on pairs
-//! with a known truth (`votes`), and on sets that were set aside (`aside`); half-painted pictures (`autocomplete`),
-//! exemplars with defects (`doubts`) and the direction of strokes (`directions`) of the demonstration scenes, which
-//! need no test data.
+//! memory up to 70 megapixels (`sizes`); comparison with plain EM, earlier methods and ebsynth (`baselines`); other
+//! settings of the library's method (`methods`); quality against time for every setting (`knobs`); the final votes on
+//! drawn styles and on pairs with a known truth (`votes`), and on sets that were set aside (`aside`); half-painted
+//! pictures (`autocomplete`), exemplars with defects (`doubts`) and the direction of strokes (`directions`) of the
+//! demonstration scenes, which need no test data.
 //!
 //! Pictures are scored by two judges: `harness/judge.rs`, and `tools/stylit_judge.py` beside the test data, which sees
 //! images only. The script runs with `LUXFER_PYTHON`, `target/peers/judge` or `python3`, if it has numpy, scipy and
@@ -23,9 +23,17 @@ mod demonstration;
 mod directions;
 #[path = "stylit/doubts.rs"]
 mod doubts;
+#[path = "stylit/earlier.rs"]
+mod earlier;
 #[path = "stylit/fidelity.rs"]
 mod fidelity;
+#[path = "stylit/greedy.rs"]
+mod greedy;
 mod harness;
+#[path = "stylit/occurrence.rs"]
+mod occurrence;
+#[path = "stylit/uniform.rs"]
+mod uniform;
 #[path = "stylit/votes.rs"]
 mod votes;
 
@@ -38,7 +46,7 @@ use luxfer::image::io::{Encoding, encode_png, load};
 use luxfer::image::pyramid::resize;
 use luxfer::job::Monitor;
 use luxfer::patch::VoteMode;
-use luxfer::stylize::{Finder, Guide, Input, Mode, Output, Params, Range, Updater, run};
+use luxfer::stylize::{Finder, Guide, Input, Output, Params, Range, Updater, run};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
@@ -377,14 +385,13 @@ fn cancel_waits(pair: &Pair, pool: &Pool) -> f64 {
     [0.0, 0.02, 0.15, 0.3, 0.45].into_iter().map(wait).fold(0.0, f64::max)
 }
 
-/// Settings of plain EM with a cost for the usage of patches (Kaspar et al. 2015).
-fn occurrence(weight: f32) -> Params {
-    let params = Params { mode: Mode::Occurrence, occurrence: weight, ..Params::default() };
-    Params { vote: VoteMode::Plain, final_vote: VoteMode::Plain, ..params }
+/// Settings of plain EM: without the budget, each target patch takes its nearest exemplar patch.
+fn plain_em() -> Params {
+    Params { coverage: 0.0, settle: 0, search_iterations: 3, ..Params::default() }
 }
 
-/// Compares luxfer with plain EM, uniform usage and ebsynth, by the script's scores, by Eq. 3, and as pictures. luxfer
-/// runs before and after the others, so that other work on the machine affects all of them.
+/// Compares luxfer with plain EM, earlier methods and ebsynth, by the script's scores, by Eq. 3, and as pictures.
+/// luxfer runs before and after the others, so that other work on the machine affects all of them.
 fn baselines(pair: &Pair, pool: &Pool) {
     let mut made: Vec<Outcome> = Vec::new();
     let stylise = |file: &str, params: &Params| {
@@ -394,18 +401,12 @@ fn baselines(pair: &Pair, pool: &Pool) {
     };
     let (before, ours) = stylise("stylit_full", &Params::default());
 
-    made.extend(plain_em(&stylise, before));
+    made.extend(compare_plain_em(&stylise, before));
 
-    // Run uniform usage, as a constraint and as a cost.
-    let uniform = Params { mode: Mode::Uniform, ..Params::default() };
-    for (name, file, params) in [
-        ("uniform (Jamriska 2015)", "stylit_uniform", uniform),
-        ("occurrence, lambda 0.01", "stylit_occurrence_001", occurrence(0.01)),
-        ("occurrence, lambda 0.1 (Kaspar 2015)", "stylit_occurrence_01", occurrence(0.1)),
-        ("occurrence, lambda 1", "stylit_occurrence_1", occurrence(1.0)),
-    ] {
-        let (seconds, file) = stylise(file, &params);
-        made.push((name.to_string(), Some(seconds), file));
+    for (name, file, method) in earlier::METHODS {
+        let (seconds, picture) = time(Clock::Wall, || pool.run(|| earlier::run(pair, method)));
+        save(file, &picture);
+        made.push((name.to_string(), Some(seconds), folder().join(file).with_extension("png")));
     }
 
     let theirs = match ebsynth(pair) {
@@ -430,14 +431,8 @@ fn baselines(pair: &Pair, pool: &Pool) {
 }
 
 /// Runs plain EM with luxfer's numbers of iterations, and with as many iterations as fit into luxfer's time.
-fn plain_em(stylise: &impl Fn(&str, &Params) -> (f64, PathBuf), seconds_of_ours: f64) -> [Outcome; 2] {
-    let plain = Params {
-        mode: Mode::Nearest,
-        search_iterations: 3,
-        vote: VoteMode::Plain,
-        final_vote: VoteMode::Plain,
-        ..Params::default()
-    };
+fn compare_plain_em(stylise: &impl Fn(&str, &Params) -> (f64, PathBuf), seconds_of_ours: f64) -> [Outcome; 2] {
+    let plain = Params { vote: VoteMode::Plain, final_vote: VoteMode::Plain, ..plain_em() };
     let (seconds, file) = stylise("stylit_plain_em", &plain);
     let short = ("plain EM".to_string(), Some(seconds), file);
     let more = |count: usize| ((count as f64 * seconds_of_ours / seconds).round() as usize).clamp(1, 100);
@@ -503,23 +498,14 @@ fn ebsynth(pair: &Pair) -> Result<(f64, PathBuf), String> {
     }
 }
 
-/// Compares other methods of matching in the same engine.
+/// Compares the budget with plain EM and with a search by table.
 fn methods(pair: &Pair, pool: &Pool) {
     let mut table = Table::new(["method", "seconds", "energy", "used %", "entropy", "guide error", "texture"]);
-    let of = |mode| Params { mode, ..Params::default() };
     for (name, params) in [
         ("error budget (Fiser 2016)", Params::default()),
         ("the paper's settings", Params::paper()),
-        ("uniform (Jamriska 2015)", of(Mode::Uniform)),
-        ("occurrence, lambda 0.01", occurrence(0.01)),
-        ("occurrence, lambda 0.1 (Kaspar 2015)", occurrence(0.1)),
-        ("occurrence, lambda 1", occurrence(1.0)),
-        ("nearest (Wexler 2007)", Params { search_iterations: 3, ..of(Mode::Nearest) }),
-        (
-            "nearest, mean",
-            Params { search_iterations: 3, final_vote: VoteMode::Plain, vote: VoteMode::Plain, ..of(Mode::Nearest) },
-        ),
-        ("greedy (Hertzmann 2001)", of(Mode::Greedy)),
+        ("nearest (Wexler 2007)", plain_em()),
+        ("nearest, mean", Params { final_vote: VoteMode::Plain, vote: VoteMode::Plain, ..plain_em() }),
         ("error budget by table", Params { finder: Finder::KdTree, ..Params::default() }),
     ] {
         let (seconds, output) = time(Clock::Wall, || pair.stylise(&params, pool));

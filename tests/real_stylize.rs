@@ -8,7 +8,7 @@ use luxfer::image::io::{Encoding, load};
 use luxfer::image::pyramid::resize;
 use luxfer::job::Monitor;
 use luxfer::patch::VoteMode;
-use luxfer::stylize::{Guide, Input, Mode, Output, Params, Range, run};
+use luxfer::stylize::{Guide, Input, Output, Params, Range, run};
 use std::path::PathBuf;
 
 const SIZE: (usize, usize) = (300, 228);
@@ -66,7 +66,8 @@ fn the_budget_beats_plain_em_on_usage_and_texture_at_like_energy() {
     let nearest = stylise(
         &pair,
         &Params {
-            mode: Mode::Nearest,
+            coverage: 0.0,
+            settle: 0,
             search_iterations: 3,
             vote: VoteMode::Plain,
             final_vote: VoteMode::Plain,

@@ -35,7 +35,7 @@ pub fn judge(picture: &Image, artwork: &Image, guides: &[(Image, Image)]) -> Jud
 }
 
 /// Returns the image with display encoding, clamped to `[0, 1]`.
-fn encoded(image: &Image) -> Image {
+pub fn encoded(image: &Image) -> Image {
     let mut out = image.clone();
     out.data.iter_mut().for_each(|v| *v = linear_to_srgb(*v).clamp(0.0, 1.0));
     out
@@ -48,7 +48,7 @@ fn everywhere(of: &QuantisedImage) -> Domain {
 
 /// The search for the nearest patches of `base` for the patches of `query`.
 fn nearest<'a>(query: &'a QuantisedImage, base: &'a QuantisedImage, allowed: &'a Domain) -> Search<'a> {
-    Search { query, base, allowed, patch: PATCH, occurrence: None, kernel: Kernel::detect(), seed: 9 }
+    Search { query, base, allowed, patch: PATCH, kernel: Kernel::detect(), seed: 9 }
 }
 
 /// Computes [`Judged::energy`] only.

@@ -131,7 +131,7 @@ impl Search<'_> {
             let mut row = Vec::with_capacity(width);
             for x in 0..width {
                 let i = y * width + x;
-                let mut best = Best { at: before.at[i], cost: before.error[i], x, y };
+                let mut best = Best { at: before.at[i], error: before.error[i], x, y };
                 if count > 0 && active(i) {
                     let middle = tree.leaf_of(query_means.of(pack(x, y))).min(count - 1);
                     // Walk outwards on both sides for a bounded number of steps. Skip patches that are not allowed.
@@ -149,7 +149,7 @@ impl Search<'_> {
                         }
                     }
                 }
-                row.push((best.at, best.cost));
+                row.push((best.at, best.error));
             }
             row
         })?;
@@ -187,15 +187,8 @@ mod tests {
         let allowed = Domain::new(60, 50, 5, None, false).unwrap();
         let tree = KdTree::new(&Means::new(&base, 5, job.job()).unwrap(), &allowed, job.job()).unwrap();
         let means = Means::new(&query, 5, job.job()).unwrap();
-        let search = Search {
-            query: &query,
-            base: &base,
-            allowed: &allowed,
-            patch: 5,
-            occurrence: None,
-            kernel: Kernel::detect(),
-            seed: 1,
-        };
+        let search =
+            Search { query: &query, base: &base, allowed: &allowed, patch: 5, kernel: Kernel::detect(), seed: 1 };
         let mut field = Field::new(26, 16).unwrap();
         search.look_up(&mut field, &tree, &means, 2 * LEAF, job.job(), |_| true).unwrap();
         // A patch whose mean equals the value of a split may lie on the other side of the split: these few patches are

@@ -2,13 +2,11 @@
 //!
 //! The query image is divided into fixed tiles. An iteration visits the patches of each tile forwards and then
 //! backwards. A patch sees the current matches of its own tile. Of other tiles, it sees the matches from before the
-//! iteration, because all tiles are written back at the end. With usage penalties, tiles run one after the other
-//! instead, and each is written back before the next one starts.
+//! iteration, because all tiles are written back at the end.
 
 use super::domain::Domain;
 use super::field::Field;
 use super::kernel::{Kernel, Patch};
-use super::occurrence::Occurrence;
 use super::position::{NONE, pack, unpack};
 use super::quantised::QuantisedImage;
 use crate::error::Result;
@@ -28,8 +26,6 @@ pub struct Search<'a> {
     pub allowed: &'a Domain,
     /// Width of a patch in pixels.
     pub patch: usize,
-    /// Usage penalties, updated during [`Search::iterate`], which then processes tiles sequentially on one thread.
-    pub occurrence: Option<&'a Occurrence>,
     pub kernel: Kernel,
     pub seed: u64,
 }
@@ -54,14 +50,6 @@ impl Search<'_> {
         }
         let run = self.patch * self.query.lanes;
         self.kernel.distance(at(self.query, x, y), at(self.base, match_x, match_y), run, self.patch, limit)
-    }
-
-    /// Returns the usage penalty of a match at a position; 0 for [`NONE`], or if there are no penalties.
-    fn cost(&self, position: u32) -> u32 {
-        match self.occurrence {
-            Some(occurrence) if position != NONE => occurrence.cost(position),
-            _ => 0,
-        }
     }
 
     /// Recomputes the distances of the patches for which `wanted` holds. A patch without an allowed match gets
@@ -91,14 +79,14 @@ impl Search<'_> {
         let rows = exec::map(field.height, job, |y| {
             let mut row = Vec::with_capacity(width);
             for i in y * width..(y + 1) * width {
-                let mut best = Best { at: field.at[i], cost: field.error[i], x: i % width, y };
+                let mut best = Best { at: field.at[i], error: field.error[i], x: i % width, y };
                 if active(i) {
                     for &position in self.allowed.members() {
                         let (px, py) = unpack(position);
                         best.try_at(self, px as isize, py as isize);
                     }
                 }
-                row.push((best.at, best.cost));
+                row.push((best.at, best.error));
             }
             row
         })?;
@@ -106,8 +94,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Improves the matches of the patches for which `active` holds, by propagation and random search. Without usage
-    /// penalties, a match is replaced only by a closer one.
+    /// Improves the matches of the patches for which `active` holds, by propagation and random search. A match is
+    /// replaced only by a closer one.
     pub fn iterate(
         &self,
         field: &mut Field,
@@ -120,16 +108,6 @@ impl Search<'_> {
         }
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
         let key = hash(self.seed, &[iteration.index]);
-        if self.occurrence.is_some() {
-            for t in 0..columns * rows {
-                job.check()?;
-                let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
-                tile.search(self, field, iteration, key, &active);
-                tile.paste(field);
-                job.report((t + 1) as f64 / (columns * rows) as f64);
-            }
-            return Ok(());
-        }
         let tiles = exec::map(columns * rows, job, |t| {
             let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
             tile.search(self, field, iteration, key, &active).then_some(tile)
@@ -182,8 +160,8 @@ impl Tile {
         }
     }
 
-    /// Runs an iteration over the active patches of this tile, forwards and then backwards. Without usage penalties,
-    /// patches whose distance is 0 are skipped. Returns whether any patch needed a search.
+    /// Runs an iteration over the active patches of this tile, forwards and then backwards. Patches whose
+    /// distance is 0 are skipped. Returns whether any patch needed a search.
     fn search(
         &mut self,
         search: &Search,
@@ -199,13 +177,11 @@ impl Tile {
             let i = if backwards { 2 * count - 1 - step } else { step };
             let (x, y) = (self.x0 + i % self.width, self.y0 + i / self.width);
             let index = y * before.width + x;
-            if self.error[i] == 0 && search.occurrence.is_none() || !active(index) {
+            if self.error[i] == 0 || !active(index) {
                 continue;
             }
             busy = true;
-            // Compare distances including usage penalties, but store distances without them.
-            let total = self.error[i].saturating_add(search.cost(self.at[i]));
-            let mut best = Best { at: self.at[i], cost: total, x, y };
+            let mut best = Best { at: self.at[i], error: self.error[i], x, y };
 
             // Propagation: try the matches of the two neighbours already visited in this direction, shifted by one.
             let d = if backwards { 1 } else { -1 };
@@ -220,14 +196,7 @@ impl Tile {
             if !backwards {
                 best.search_randomly(search, iteration, Rng::new(key, &[index as u64]));
             }
-            if best.cost == total && best.at == self.at[i] {
-                continue;
-            }
-            let distance = best.cost - search.cost(best.at);
-            if let Some(occurrence) = search.occurrence {
-                occurrence.replace(self.at[i], best.at);
-            }
-            (self.at[i], self.error[i]) = (best.at, distance);
+            (self.at[i], self.error[i]) = (best.at, best.error);
         }
         busy
     }
@@ -294,11 +263,10 @@ impl Tile {
     }
 }
 
-/// The best match so far of the patch at (`x`, `y`). `cost` is its distance plus its usage penalty; `u32::MAX` marks a
-/// hint, or no match.
+/// The best match so far of the patch at (`x`, `y`), and its distance `error`; `u32::MAX` marks a hint, or no match.
 pub(super) struct Best {
     pub at: u32,
-    pub cost: u32,
+    pub error: u32,
     pub x: usize,
     pub y: usize,
 }
@@ -308,7 +276,7 @@ impl Best {
     /// best match, within decreasing radii.
     #[inline(always)]
     fn search_randomly(&mut self, search: &Search, iteration: SearchIteration, mut rng: Rng) {
-        if self.cost == u32::MAX {
+        if self.error == u32::MAX {
             for _ in 0..iteration.initial_samples {
                 let members = search.allowed.members();
                 let (px, py) = unpack(members[rng.below(members.len())]);
@@ -334,16 +302,12 @@ impl Best {
         let at = pack(px, py);
         // Skip the current match if its distance is known. (The distance of a hint is not.) Skip positions that are not
         // allowed.
-        if (at == self.at && self.cost != u32::MAX) || !search.allowed.contains(px, py) {
+        if (at == self.at && self.error != u32::MAX) || self.error == 0 || !search.allowed.contains(px, py) {
             return;
         }
-        let penalty = search.cost(at);
-        if penalty >= self.cost {
-            return;
-        }
-        let error = search.distance(self.x, self.y, px, py, self.cost - penalty);
-        if error < self.cost - penalty {
-            (self.at, self.cost) = (at, error + penalty);
+        let error = search.distance(self.x, self.y, px, py, self.error);
+        if error < self.error {
+            (self.at, self.error) = (at, error);
         }
     }
 }
@@ -366,15 +330,8 @@ mod tests {
     fn joining_corrects_outliers_lowers_the_cost_and_keeps_good_matches() {
         let (query, base) = (noise(70, 60), noise(70, 60));
         let allowed = Domain::new(70, 60, 5, None, false).unwrap();
-        let search = Search {
-            query: &query,
-            base: &base,
-            allowed: &allowed,
-            patch: 5,
-            occurrence: None,
-            kernel: Kernel::detect(),
-            seed: 1,
-        };
+        let search =
+            Search { query: &query, base: &base, allowed: &allowed, patch: 5, kernel: Kernel::detect(), seed: 1 };
         let monitor = Monitor::default();
         let truth = {
             let mut field = Field::proportional(66, 56, &allowed).unwrap();

@@ -4,7 +4,7 @@
 use super::{Clock, Expected, Goal};
 use crate::error::Result;
 use crate::job::Job;
-use crate::stylize::{Input, Mode, Params, PilotRuns};
+use crate::stylize::{Input, Params, PilotRuns};
 
 /// A planned stylisation.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,10 +41,6 @@ pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job
 /// Returns a list of settings, in the order from quick to careful, and the index of the reference settings
 /// (`Params::fast`) in this list. The settings come from the Pareto front in `benches/stylit.rs`.
 fn ladder(params: &Params) -> (Vec<Params>, usize) {
-    // The greedy mode makes one matching pass: it has no settings that trade error for time.
-    if params.mode == Mode::Greedy {
-        return (vec![params.clone()], 0);
-    }
     let rung = |like: &Params| Params {
         iterations: like.iterations,
         coarse_iterations: like.coarse_iterations,

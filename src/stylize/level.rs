@@ -273,14 +273,6 @@ impl<'a> Level<'a> {
         Ok(touched)
     }
 
-    /// Stores the colour of one pixel in the quantised target.
-    pub fn set_pixel(&mut self, x: usize, y: usize, colour: &[f32]) {
-        let start = (y * self.target.width + x) * self.target.lanes;
-        for ((out, q), v) in self.target.data[start..].iter_mut().zip(&self.colours).zip(colour) {
-            *out = q.quantise(*v);
-        }
-    }
-
     /// Returns the distance, in quantised units, of two patches for which the weighted squared difference of StyLit's
     /// Eq. 1, with channels in `[0, 1]`, is 1 in every pixel.
     pub fn unit(&self) -> f64 {
@@ -294,7 +286,6 @@ impl<'a> Level<'a> {
             base: &self.source,
             allowed: &self.allowed,
             patch: self.problem.patch,
-            occurrence: None,
             kernel: self.kernel,
             seed: self.seed,
         }

@@ -10,11 +10,10 @@
 //!
 //! The modules: `guides` normalises the guides, `level` quantises one pyramid level, `finder` searches for nearest
 //! patches, `budget` finds the knee of the errors, `retrieve` matches under the budget, and `multires` runs from
-//! coarse to fine. `border` joins new paint to a painted part. `updater` follows changes of the artwork, `animate`
-//! advances from frame to frame, and `greedy` is Hertzmann's algorithm for comparison. `report` measures the result,
-//! `lack` finds light that the exemplar lacks, `exemplar` finds defects of the exemplar, `directions` decides by its
-//! strokes whether the normals guide a run (not in the paper), and `pilot` predicts time and energy from runs at low
-//! resolution.
+//! coarse to fine. `border` joins new paint to a painted part. `updater` follows changes of the artwork, and `animate`
+//! advances from frame to frame. `report` measures the result, `lack` finds light that the exemplar lacks, `exemplar`
+//! finds defects of the exemplar, `directions` decides by its strokes whether the normals guide a run (not in the
+//! paper), and `pilot` predicts time and energy from runs at low resolution.
 //!
 //! The final picture is a blend of the mean and of whole exemplar pixels, with as much fine detail as the exemplar
 //! (`VoteMode::Adaptive`, not in the paper).
@@ -44,7 +43,6 @@ mod budget;
 mod directions;
 mod exemplar;
 mod finder;
-mod greedy;
 mod guide_record;
 mod guides;
 mod lack;
@@ -70,7 +68,7 @@ pub use guide_record::GuideRecord;
 pub use guides::{Guide, MAX_CHANNELS, Range};
 pub use lack::Lack;
 pub use output::{IntermediateResult, Output, Publish};
-pub use params::{Finder, Input, Mode, Params};
+pub use params::{Finder, Input, Params};
 pub use pilot::{PilotRuns, Prediction};
 pub use report::{LevelReport, Report, Usage};
 pub use retrieve::PassReport;

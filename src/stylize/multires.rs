@@ -5,19 +5,18 @@ use super::animate::{Moved, keep, moved};
 use super::border::{self, Border};
 use super::exemplar::examine;
 use super::finder::Nearest;
-use super::greedy;
 use super::guide_record::GuideRecord;
 use super::lack::lack;
 use super::level::{Level, Problem};
 use super::output::{IntermediateResult, Output, Publish};
-use super::params::{Finder, Input, Mode, Params};
-use super::picture::{DecodeInput, decode, decode_into, paint, restore_known, unblended_share};
+use super::params::{Finder, Input, Params};
+use super::picture::{DecodeInput, decode, decode_into, paint, unblended_share};
 use super::report::{LevelReport, Report, Usage, energy, guide_error, sources};
 use super::retrieve::{PassReport, retrieve};
 use crate::error::{Error, Result};
 use crate::image::{Comparison, Image, try_collect};
 use crate::job::Job;
-use crate::patch::{Field, NONE, Occurrence, Search, SearchIteration, level_count, unpack};
+use crate::patch::{Field, NONE, SearchIteration, level_count, unpack};
 use crate::rng::hash;
 
 /// If there are at most this many pairs of patches, the initial field is found by exhaustive comparison, otherwise by
@@ -143,18 +142,14 @@ fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, 
 
 /// Alternates matching and voting on level `l`.
 fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job: Job) -> Result<LevelReport> {
-    let iterations = match (params.mode, l) {
-        (Mode::Greedy, _) => 1,
-        (_, 0) => params.finest_iterations + params.polish,
-        (_, 1) => params.iterations,
+    let iterations = match l {
+        0 => params.finest_iterations + params.polish,
+        1 => params.iterations,
         _ => params.coarse_iterations,
     };
     let target = &level.problem.guides.target;
     let mut report = LevelReport { width: target.width, height: target.height, energy: Vec::new(), passes: Vec::new() };
-    let mut border = match params.mode {
-        Mode::Greedy => None,
-        _ => Border::new(level.problem, &state.kept, params, level.seed, job.part(0.12, 0.12))?,
-    };
+    let mut border = Border::new(level.problem, &state.kept, params, level.seed, job.part(0.12, 0.12))?;
     for k in 0..iterations {
         let part = |from: f64, to: f64| {
             let n = iterations as f64;
@@ -170,13 +165,9 @@ fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job:
             }
         }
         report.energy.push(energy(field, level));
-        // Paint by voting, except in the greedy mode, which has painted while matching.
         let is_last = l == 0 && k + 1 == iterations;
         let vote_mode = if is_last { params.final_vote } else { params.vote };
-        match params.mode {
-            Mode::Greedy => restore_known(picture, level.problem),
-            _ => paint(picture, field, level.problem, vote_mode, part(0.9, 1.0), |_| true)?,
-        }
+        paint(picture, field, level.problem, vote_mode, part(0.9, 1.0), |_| true)?;
         if is_last && border.is_some() {
             border::fade(picture, field, level.problem, vote_mode, part(1.0, 1.0), |_| true)?;
         }
@@ -184,7 +175,8 @@ fn iterate(level: &mut Level, state: &mut State, params: &Params, l: usize, job:
     Ok(report)
 }
 
-/// Runs iteration `k` of the matching on level `l`. Returns the retrieval passes if the mode uses retrieval.
+/// Runs iteration `k` of the matching on level `l`. Returns the retrieval passes, or `None` in the
+/// iterations of `Params::polish`.
 fn rematch(
     level: &mut Level,
     state: &mut State,
@@ -197,28 +189,25 @@ fn rematch(
     // The distance of a match changes only if the target patch contains a changed pixel, so rematch only these patches.
     // Two iterations rematch all patches. In the first iteration, no distances are valid yet. In the first iteration of
     // `Params::polish`, the patches are still assigned under the budget, not to their nearest exemplar patches.
-    let polishes = params.mode == Mode::Budget && l == 0 && k >= params.finest_iterations;
-    let rematches_all = k == 0 || polishes && k == params.finest_iterations;
+    let polishes = l == 0 && k >= params.finest_iterations;
+    let rematches_all = k == 0 || l == 0 && k == params.finest_iterations;
     let mut changed = if rematches_all {
         try_collect(level.wanted.flags().iter().copied())?
     } else {
         level.changed_by(picture, job.part(0.0, 0.01))?
     };
     level.set_picture(picture, job.part(0.0, 0.01))?;
-    match params.mode {
-        Mode::Budget if polishes => {
-            changed.iter_mut().zip(&*kept).for_each(|(changed, kept)| *changed &= !kept);
-            nearest(level, field, &changed, params, k, job)?;
-        }
-        Mode::Budget | Mode::Uniform => {
-            return retrieve(level, field, &changed, kept, params, k as u64, job).map(Some);
-        }
-        Mode::Nearest | Mode::Occurrence => nearest(level, field, &changed, params, k, job)?,
-        Mode::Greedy => {
-            nearest(level, field, &changed, params, k, job.part(0.0, 0.55))?;
-            greedy::run(level, field, picture, l, job.part(0.55, 1.0))?;
-        }
+    if !polishes {
+        return retrieve(level, field, &changed, kept, params, k as u64, job).map(Some);
     }
+    // Find the nearest exemplar patch of each target patch that has changed and is not kept. All other matches are up
+    // to date.
+    changed.iter_mut().zip(&*kept).for_each(|(changed, kept)| *changed &= !kept);
+    let changed = |i: usize| changed[i];
+    let search = level.forward();
+    search.rescore(field, job.part(0.0, 0.1), changed)?;
+    let nearest = Nearest::new(level, params, job.part(0.1, 0.2))?;
+    nearest.forward(&search, field, k as u64, job.part(0.2, 1.0), changed)?;
     Ok(None)
 }
 
@@ -261,24 +250,6 @@ fn agreement(guide_record: &GuideRecord, input: &Input, halved: usize, job: Job)
         }
         _ => Ok(Comparison::default()),
     }
-}
-
-/// Finds the nearest exemplar patch of each target patch that has changed. The matches of all other target patches are
-/// up to date.
-fn nearest(level: &Level, field: &mut Field, changed: &[bool], params: &Params, round: usize, job: Job) -> Result<()> {
-    let changed = |i: usize| changed[i];
-    let search = level.forward();
-    search.rescore(field, job.part(0.0, 0.1), changed)?;
-    let nearest = Nearest::new(level, params, job.part(0.1, 0.2))?;
-    if params.mode != Mode::Occurrence || params.occurrence == 0.0 {
-        return nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), changed);
-    }
-    // The usage penalty of a match depends on all other matches, so the match of any patch may change.
-    let patch = level.problem.patch;
-    let weight = f64::from(params.occurrence) * level.unit() / (patch * patch) as f64;
-    let occurrence = Occurrence::new(field, &level.allowed, patch, weight)?;
-    let search = Search { occurrence: Some(&occurrence), ..search };
-    nearest.forward(&search, field, round as u64, job.part(0.2, 1.0), |i| level.wanted.contains_index(i))
 }
 
 /// Finds an initial field by the guides alone, without colours. Among equally close matches, the match at the same

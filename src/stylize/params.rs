@@ -6,23 +6,6 @@ use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 use crate::patch::{Field, MAX_SIDE, VoteMode};
 
-/// The matching method. The C interface has only [`Mode::Budget`]; the others are earlier methods, with which
-/// `benches/stylit.rs` compares it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Mode {
-    /// The paper's method: each exemplar patch searches for its target (reversed retrieval), under an error budget.
-    Budget,
-    /// Reversed retrieval without a budget: all exemplar patches are used equally often (Jamriška et al. 2015).
-    Uniform,
-    /// Each target patch takes its nearest exemplar patch (Wexler et al. 2007, Kwatra et al. 2005).
-    Nearest,
-    /// One pass in scan order: each pixel takes its best or its most coherent match (Hertzmann et al. 2001).
-    Greedy,
-    /// Each target patch takes its nearest exemplar patch, with a penalty for frequently used exemplar patches (Kaspar
-    /// et al. 2015): see `Params::occurrence`. Single-threaded, and with PatchMatch only.
-    Occurrence,
-}
-
 /// The algorithm that searches for nearest patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finder {
@@ -81,7 +64,6 @@ impl<'a> Input<'a> {
 /// The settings of a stylisation. The tags state the origin of the defaults.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
-    pub mode: Mode,
     pub finder: Finder,
     /// Width of a patch in pixels, odd, in `[1, 33]`. Reduced if the images are smaller. \[paper §3.4\]
     pub patch: usize,
@@ -99,14 +81,15 @@ pub struct Params {
     pub coarse_iterations: usize,
     /// EM iterations on the finest level, in `[1, 100]`. \[bench stylit:knobs\]
     pub finest_iterations: usize,
-    /// Further EM iterations on the finest level, in `[0, 100]`; the paper has none. In `Mode::Budget`, they start
-    /// from the result under the budget and let each target patch take its nearest exemplar patch (Wexler et al.
-    /// 2007). In the other iterative modes, they only add to `finest_iterations`. \[bench stylit:presets\]
+    /// Further EM iterations on the finest level, in `[0, 100]`; the paper has none. They start from the result
+    /// under the budget and let each target patch take its nearest exemplar patch (Wexler et al. 2007).
+    /// \[bench stylit:presets\]
     pub polish: usize,
     /// PatchMatch iterations per search for nearest patches, in `[1, 100]`. \[bench stylit:knobs\]
     pub search_iterations: usize,
     /// Share of the target patches that are matched under the budget, in `[0, 1]`. All other target patches are then
-    /// matched without the budget. \[bench stylit:knobs\]
+    /// matched without the budget. With 0 here and in `settle`, every target patch takes its nearest exemplar patch
+    /// (plain EM: Wexler et al. 2007). \[bench stylit:knobs\]
     pub coverage: f32,
     /// Maximum number of retrieval passes per iteration, in `[1, 1000]`. \[bench stylit:knobs\]
     pub passes: usize,
@@ -129,11 +112,6 @@ pub struct Params {
     /// all guides whose range is `Range::Light`. Use it for targets under different light than the exemplar (StyLit,
     /// Fig. 16). By default they are not adapted. \[convention\]
     pub match_appearance: f32,
-    /// Weight λ of `Mode::Occurrence`, in `[0, 10]`: the penalty for a match to an exemplar patch of average usage.
-    /// The unit is that of Eq. 1 of StyLit: the sum over a patch of squared differences of channels in `[0, 1]`. With
-    /// 0 the result equals that of `Mode::Nearest` to the bit. Fišer et al. chose 0.1 for their picture (StyLit, Fig.
-    /// 10n). \[paper §4.1\]
-    pub occurrence: f32,
     /// Whether to work at half the resolution, with guides compressed to their principal components: for interactive
     /// painting.
     pub preview: bool,
@@ -143,7 +121,6 @@ pub struct Params {
 impl Default for Params {
     fn default() -> Self {
         Self {
-            mode: Mode::Budget,
             finder: Finder::PatchMatch,
             patch: 5,
             guide_weight: 2.0,
@@ -162,7 +139,6 @@ impl Default for Params {
             final_vote: VoteMode::Adaptive,
             coherence: 1.0,
             match_appearance: 0.0,
-            occurrence: 0.1,
             preview: false,
             seed: 1,
         }
@@ -216,13 +192,7 @@ impl Params {
         check_range("settle", self.settle, 0, 100)?;
         check_range("seam", self.seam, 0.0, 100.0)?;
         check_range("coherence", self.coherence, 0.0, 1.0)?;
-        if self.mode == Mode::Occurrence && self.finder == Finder::KdTree {
-            return Err(Error::argument(
-                "mode is occurrence and search is k-d tree; with this mode, search must be PatchMatch",
-            ));
-        }
         check_range("match_appearance", self.match_appearance, 0.0, 1.0)?;
-        check_range("occurrence", self.occurrence, 0.0, 10.0)?;
         check_range("passes", self.passes, 1, 1000)?;
         Ok(())
     }

@@ -29,7 +29,7 @@ pub(super) fn unblended_share(picture: &Image, field: &Field, problem: &Problem,
 }
 
 /// Restores the known pixels outside the target mask.
-pub(super) fn restore_known(picture: &mut Image, problem: &Problem) {
+fn restore_known(picture: &mut Image, problem: &Problem) {
     if let (Some(mask), Some(known)) = (&problem.target_mask, &problem.known) {
         let channels = picture.channels;
         let pixels = picture.data.chunks_exact_mut(channels).zip(known.data.chunks_exact(channels));

@@ -24,7 +24,7 @@
 use super::budget::budget;
 use super::finder::Nearest;
 use super::level::Level;
-use super::params::{Mode, Params};
+use super::params::Params;
 use crate::error::Result;
 use crate::exec;
 use crate::image::try_collect;
@@ -72,7 +72,7 @@ pub(super) fn retrieve(
     free.compact();
     let is_kept = |i: usize| kept.get(i) == Some(&true);
     let mut passes = Vec::new();
-    let enough = if params.mode == Mode::Uniform { 1.0 } else { f64::from(params.coverage) };
+    let enough = f64::from(params.coverage);
 
     while passes.len() < params.passes && ((wanted - free.len()) as f64) < enough * wanted as f64 {
         let done = passes.len() as f64 / params.passes as f64;
@@ -80,7 +80,7 @@ pub(super) fn retrieve(
         let lost = try_collect(reverse.error.iter().map(|&e| e == u32::MAX))?;
         let index = 2000 * round + passes.len() as u64;
         nearest.reverse(&mut reverse, &free, index, job, |i| lost[i] && level.allowed.contains_index(i))?;
-        let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, params.mode, job)?;
+        let (knee, gained) = accept(&mut matched, &mut free, &mut reverse, job)?;
         let coverage = (wanted - free.len()) as f64 / wanted as f64;
         passes.push(PassReport { knee, gained, coverage });
         if (gained as f64) < MIN_GAIN * wanted as f64 {
@@ -105,16 +105,15 @@ pub(super) fn retrieve(
 }
 
 /// Assigns target patches to exemplar patches in order of rising error. Stops before the sum of the errors exceeds the
-/// budget; [`Mode::Uniform`] has no budget. Returns the share of the exemplar patches whose error lies left of the knee
-/// of the sorted errors, and the number of target patches assigned.
-fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mode, job: Job) -> Result<(f64, usize)> {
+/// budget. Returns the share of the exemplar patches whose error lies left of the knee of the sorted errors, and the
+/// number of target patches assigned.
+fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, job: Job) -> Result<(f64, usize)> {
     // Sort by error, then by position.
     let found = reverse.error.iter().enumerate().filter(|(_, e)| **e != u32::MAX);
     let mut order = try_collect(found.map(|(i, &e)| u64::from(e) << 32 | i as u64))?;
     exec::sort(&mut order, job)?;
     let errors = try_collect(order.iter().map(|o| (o >> 32) as u32))?;
     let budget = budget(&errors);
-    let total = if mode == Mode::Uniform { f64::INFINITY } else { budget.total };
 
     // Spend the budget: each assigned target costs its error. Skip targets that are already taken.
     let (mut spent, mut gained) = (0.0, 0);
@@ -126,7 +125,7 @@ fn accept(matched: &mut Field, free: &mut Domain, reverse: &mut Field, mode: Mod
             continue;
         }
         spent += f64::from(error);
-        if spent > total {
+        if spent > budget.total {
             break;
         }
         matched.at[target] = pack(source % reverse.width, source / reverse.width);

@@ -51,20 +51,22 @@ fn stylise(input: &Input, params: &Params) -> Result<Output> {
     run(input, params, Monitor::default().job())
 }
 
-const MODES: [Mode; 5] = [Mode::Budget, Mode::Uniform, Mode::Nearest, Mode::Greedy, Mode::Occurrence];
+/// Plain EM: no budget, so each target patch takes its nearest exemplar patch.
+fn nearest() -> Params {
+    Params { coverage: 0.0, settle: 0, ..Params::default() }
+}
 
 #[test]
-fn equal_guides_give_the_artwork_back_to_the_bit_in_every_mode() {
+fn equal_guides_give_the_artwork_back_to_the_bit() {
     for (w, h) in [(61, 47), (40, 33)] {
         let a = scene(w, h, 30.0, 20.0, 14.0);
         let art = artwork(&a);
-        for mode in MODES {
-            let output = stylise(&input(&art, &[guide(&a, &a)]), &Params { mode, ..Params::default() }).unwrap();
-            assert!(output.image == art, "{mode:?} {w} x {h}");
+        let table = Params { finder: Finder::KdTree, ..Params::default() };
+        for params in [Params::default(), nearest(), table] {
+            let output = stylise(&input(&art, &[guide(&a, &a)]), &params).unwrap();
+            assert!(output.image == art, "{params:?} {w} x {h}");
             assert!(output.report.guide_error.data.iter().all(|&e| e == 0.0));
         }
-        let table = Params { finder: Finder::KdTree, ..Params::default() };
-        assert!(stylise(&input(&art, &[guide(&a, &a)]), &table).unwrap().image == art);
         // With constant guides, only the position distinguishes the patches.
         let flat = Image::from_fn(w, h, |_, _| [0.3]).unwrap();
         let output = stylise(&input(&art, &[guide(&flat, &flat)]), &Params::default()).unwrap();
@@ -79,8 +81,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
     let art = artwork(&a);
     for params in [
         Params { levels: 3, iterations: 2, ..Params::default() },
-        Params { mode: Mode::Nearest, levels: 3, iterations: 2, ..Params::default() },
-        Params { mode: Mode::Occurrence, levels: 3, iterations: 2, ..Params::default() },
+        Params { levels: 3, iterations: 2, ..nearest() },
         Params { iterations: 1, finest_iterations: 2, passes: 4, ..Params::paper() },
         Params::preview(),
         Params { finder: Finder::KdTree, levels: 2, iterations: 1, ..Params::default() },
@@ -125,8 +126,9 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
         [0.5 + 0.8 * grain, 0.4 + 0.3 * grain, 0.5]
     })
     .unwrap();
-    let with = |mode| stylise(&input(&art, &[guide(&a, &b)]), &Params { mode, ..Params::default() }).unwrap();
-    let (budget, nearest) = (with(Mode::Budget), with(Mode::Nearest));
+    let with = |params| stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
+    let (budget, nearest) = (with(Params::default()), with(nearest()));
+    assert!(nearest.report.levels.iter().flat_map(|l| &l.passes).all(|passes| passes.is_empty()));
     let (rich, poor) = (budget.report.usage, nearest.report.usage);
     assert!(rich.used > 1.1 * poor.used && rich.entropy > poor.entropy, "{rich:?} {poor:?}");
     // Returns the mean squared difference of horizontal neighbours in the first channel, up to a constant factor.
@@ -140,8 +142,8 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
     assert!(kept > 1.1 * washed, "{kept} {washed}");
 }
 
-/// Fig. 7 of StyLit: the target's highlight is four times as large as the exemplar's. Uniform usage must fill a part
-/// of the highlight with other paint; the budget reuses the exemplar's highlight.
+/// Fig. 7 of StyLit: the target's highlight is four times as large as the exemplar's. If all exemplar patches were
+/// used equally often, a part of it would be filled with other paint; the budget reuses the exemplar's highlight.
 #[test]
 fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     let half = |share: f32| Image::from_fn(60, 60, |x, _| [if (x as f32) < 60.0 * share { 0.9 } else { 0.1 }]).unwrap();
@@ -151,13 +153,9 @@ fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
         if x < 12 { [0.9 - grain, 0.8, 0.1] } else { [0.1 + grain, 0.1, 0.8] }
     })
     .unwrap();
-    let wrong = |mode| {
-        let params = Params { mode, settle: 0, levels: 3, ..Params::default() };
-        let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
-        (0..60 * 60).filter(|i| i % 60 < 46 && output.image.data[3 * i] < 0.5).count()
-    };
-    assert_eq!(wrong(Mode::Budget), 0);
-    assert!(wrong(Mode::Uniform) > 600, "{}", wrong(Mode::Uniform));
+    let params = Params { settle: 0, levels: 3, ..Params::default() };
+    let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
+    assert_eq!((0..60 * 60).filter(|i| i % 60 < 46 && output.image.data[3 * i] < 0.5).count(), 0);
 }
 
 /// Light that the exemplar lacks is painted from other parts of the exemplar, and the guide error shows where.
@@ -181,40 +179,11 @@ fn light_that_the_exemplar_lacks_shows_in_the_guide_error() {
     assert!(mean(true) > 20.0 * mean(false) && mean(true) > 0.05, "{} {}", mean(true), mean(false));
 }
 
-/// The penalty of Kaspar et al. (2015) leads from plain EM at λ = 0 towards uniform usage.
-#[test]
-fn the_more_occurrence_weighs_the_more_of_the_exemplar_is_used() {
-    let (a, b) = (scene(90, 70, 40.0, 30.0, 22.0), scene(120, 100, 70.0, 55.0, 35.0));
-    let art = artwork(&a);
-    let with = |mode, occurrence: f32| {
-        stylise(&input(&art, &[guide(&a, &b)]), &Params { mode, occurrence, ..Params::default() }).unwrap()
-    };
-    let (none, plain) = (with(Mode::Occurrence, 0.0), with(Mode::Nearest, 0.1));
-    assert!(none.image == plain.image && none.field == plain.field && none.report.levels == plain.report.levels);
-    // Test weights up to 0.1, at which nearly all exemplar patches are used. Larger weights hardly use more of them.
-    let runs = [0.0, 0.003, 0.01, 0.1].map(|weight| with(Mode::Occurrence, weight));
-    let usage = runs.each_ref().map(|run| run.report.usage);
-    assert!(usage.windows(2).all(|w| w[1].used > w[0].used && w[1].entropy > w[0].entropy), "{usage:?}");
-    assert!(usage[3].used > 0.95, "{usage:?}");
-    // The penalty makes matches less similar, which raises the energy; the penalty itself is not part of the energy.
-    // (The run with weight 0 is left out, because it rematches fewer patches in each iteration.)
-    let energy = runs.each_ref().map(|run| *run.report.levels.last().unwrap().energy.last().unwrap());
-    assert!(energy[1] < energy[2] && energy[2] < energy[3], "{energy:?}");
-    // The largest valid weight yields finite colours, and invalid weights are errors.
-    assert_eq!(with(Mode::Occurrence, 10.0).image.count_non_finite(), 0);
-    for weight in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -0.1, 10.1] {
-        let params = Params { occurrence: weight, ..Params::default() };
-        let error = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap_err();
-        assert!(error.kind == ErrorKind::InvalidArgument && error.message.contains("occurrence is"), "{error}");
-    }
-}
-
 #[test]
 fn energy_per_iteration_falls_for_nearest_patches() {
     let (a, b) = (scene(80, 64, 40.0, 30.0, 22.0), scene(80, 64, 30.0, 34.0, 18.0));
     let art = artwork(&a);
-    let params =
-        Params { mode: Mode::Nearest, levels: 1, finest_iterations: 6, vote: VoteMode::Plain, ..Params::default() };
+    let params = Params { levels: 1, finest_iterations: 6, vote: VoteMode::Plain, ..nearest() };
     let output = stylise(&input(&art, &[guide(&a, &b)]), &params).unwrap();
     // Matching lowers the energy (StyLit, Eq. 3) for a fixed picture, and averaging lowers it for a fixed field.
     let energy = &output.report.levels[0].energy;
@@ -235,10 +204,10 @@ fn masks_keep_patches_out_and_pixels_unchanged() {
     let allowed = Image::from_fn(64, 48, |x, _| [f32::from(u8::from(x >= 20))]).unwrap();
     let wanted = Image::from_fn(64, 48, |x, _| [f32::from(u8::from(x >= 32))]).unwrap();
     let known = Image::from_fn(64, 48, |x, y| [0.1, 0.2, (x + y) as f32 / 200.0]).unwrap();
-    for mode in MODES {
+    for method in [Params::default(), nearest()] {
         let guides = [guide(&a, &b)];
         let masked = Input { source_mask: Some(&allowed), target_mask: Some(&wanted), ..input(&art, &guides) };
-        let params = Params { mode, levels: 3, iterations: 2, ..Params::default() };
+        let params = Params { levels: 3, iterations: 2, ..method };
         let image = stylise(&Input { known: Some(&known), ..masked }, &params).unwrap().image;
         let black = stylise(&masked, &params).unwrap().image;
         for y in 0..48 {
@@ -247,7 +216,7 @@ fn masks_keep_patches_out_and_pixels_unchanged() {
                     assert_eq!(image.pixel(x, y), known.pixel(x, y));
                     assert_eq!(black.pixel(x, y), [0.0; 3]);
                 } else {
-                    assert!(image.pixel(x, y)[1] < 1.5 && image.pixel(x, y)[0] > 0.0, "{mode:?} {x} {y}");
+                    assert!(image.pixel(x, y)[1] < 1.5 && image.pixel(x, y)[0] > 0.0, "{params:?} {x} {y}");
                 }
             }
         }
@@ -262,8 +231,7 @@ fn extremes_have_an_answer() {
         assert_eq!(output.image.count_non_finite(), 0);
         output
     };
-    for mode in MODES {
-        let params = Params { mode, ..Params::default() };
+    for params in [Params::default(), nearest()] {
         // Test images of one pixel, images thinner than a patch, and images much larger or smaller than the other
         // image. Each is first the target, then the exemplar.
         for (w, h) in [(1, 1), (1, 40), (3, 2), (5, 5), (150, 4)] {
@@ -276,12 +244,12 @@ fn extremes_have_an_answer() {
         hot.pixel_mut(15, 10)[0] = 1e6;
         let output = finite(stylise(&input(&art, &[guide(&hot, &a)]), &params).unwrap());
         let same = output.image.data.iter().zip(&art.data).filter(|(x, y)| x == y).count();
-        assert!(mode == Mode::Uniform || same * 10 > art.data.len() * 8, "{mode:?} {same}");
+        assert!(same * 10 > art.data.len() * 8, "{params:?} {same}");
         // Test saturated guides, with every pixel far beyond white.
         let mut bright = a.clone();
         bright.data.iter_mut().for_each(|v| *v = 1e9 * (1.0 + *v));
         let output = finite(stylise(&input(&art, &[guide(&bright, &bright)]), &params).unwrap());
-        assert!(output.image == art, "{mode:?}");
+        assert!(output.image == art, "{params:?}");
         // Test zero weight and extreme weights.
         let guides = [Guide { weight: 0.0, ..guide(&a, &a) }];
         finite(stylise(&input(&art, &guides), &params).unwrap());
@@ -369,7 +337,6 @@ fn contradictions_are_named() {
         Params { coarse_guides: 1e4, ..default.clone() },
         Params { guide_weight: f32::INFINITY, ..default.clone() },
         Params { coverage: -0.1, ..default.clone() },
-        Params { mode: Mode::Occurrence, finder: Finder::KdTree, ..default.clone() },
     ] {
         assert_eq!(stylise(&good, &params).unwrap_err().kind, ErrorKind::InvalidArgument);
     }

@@ -7,7 +7,7 @@ use super::border;
 use super::level::{Level, Problem, encode, encoded};
 use super::multires;
 use super::output::{Output, Publish};
-use super::params::{Input, Mode, Params};
+use super::params::{Input, Params};
 use super::picture::{DecodeInput, decode_into, paint};
 use super::report::sources;
 use crate::error::{Error, Result};
@@ -159,8 +159,7 @@ fn rematch(problem: &Problem, target: Target, changed: &[bool], params: &Params,
         let vote_mode = if round + 1 == ROUNDS { params.final_vote } else { params.vote };
         paint(picture, field, problem, vote_mode, part(0.8, 1.0), |i| old[i])?;
         // Fade out the step at the border of the painted part, if the first run has done so.
-        let may_fade = problem.known.is_some() && params.mode != Mode::Greedy;
-        if round + 1 == ROUNDS && may_fade {
+        if round + 1 == ROUNDS && problem.known.is_some() {
             border::fade(picture, field, problem, vote_mode, part(1.0, 1.0), |i| old[i])?;
         }
     }
