@@ -613,7 +613,8 @@ layouts! {
     luxfer_mixture: struct_size in_gamut colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;
     luxfer_preset: struct_size edition illuminance glare uniformity rendering walls ceiling name;
-    luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size temperature rendering variants emitters;
+    luxfer_distribution_report: struct_size planes angles reserved flux lamp_flux watts size temperature rendering
+        variants emitters;
     luxfer_transfer_params: struct_size max_texels plane_distance white_luminance target rectify features plane lights
         emission relight render pattern;
     luxfer_pattern_params: struct_size scale length texel_size rotation offset margin;

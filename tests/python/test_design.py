@@ -581,7 +581,7 @@ class BadInput(Case):
             design.Product.from_bytes(context(), type_b, "ies", "flood")
         path = self.folder / "lamp.txt"
         path.write_text("lamp")
-        with self.assertRaisesRegex(ValueError, "must end in .ies or .ldt"):
+        with self.assertRaisesRegex(ValueError, "must end in .ies, .ldt, .xml or .gldf"):
             design.Product.load(context(), path)
 
     def test_areas_that_leave_the_room(self):
