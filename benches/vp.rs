@@ -2,8 +2,8 @@
 //! re-projected panoramas, and the error against time with fewer lines or pixels. The latter is measured also on
 //! generated rooms, whose directions are known exactly.
 //!
-//! Arguments select sections: accuracy on given segments (`segments`) and on panoramas (`panoramas`); undone distortions
-//! of lenses (`lenses`); time, and error against time (`curves`).
+//! Arguments select sections: accuracy on given segments (`segments`) and on panoramas (`panoramas`); undone
+//! distortions of lenses (`lenses`); time, and error against time (`curves`).
 
 mod harness;
 #[path = "../tests/truth/mod.rs"]
@@ -151,8 +151,8 @@ fn print_bounds(sets: &[Option<GivenSet>; 2]) {
 const YORK_FOCAL: f64 = 674.858;
 /// Radial distortions that are undone in York Urban's segments.
 const UNDONE: [f64; 6] = [0.0, -0.01, -0.02, -0.03, -0.04, -0.05];
-/// Development photos of the corpus that were cut out of panoramas, in which a distortion is measured although they have
-/// none.
+/// Development photos of the corpus that were cut out of panoramas, in which a distortion is measured although they
+/// have none.
 const CURVED: [&str; 6] = [
     "chester_dining",
     "civil_battens_a",
