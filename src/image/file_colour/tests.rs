@@ -304,7 +304,7 @@ fn damaged_profiles_are_ignored_and_bombs_are_not_unpacked() {
 
 #[test]
 fn pieces_of_a_profile_are_joined_by_number_and_must_be_complete() {
-    let piece = |number: u8, count: u8, data: &[u8]| [b"ICC_PROFILE\0", &[number, count], data].concat();
+    let piece = |number: u8, count: u8, data: &[u8]| [&b"ICC_PROFILE\0"[..], &[number, count], data].concat();
     let joined = |pieces: &[Vec<u8>]| {
         of_segments(pieces.iter().map(|piece| (0xe2, &piece[..]))).unwrap().map(|profile| profile.into_owned())
     };
