@@ -147,7 +147,7 @@ fn rim_error(colour: Vec3, radius: f64, bright: f32, seed: u64) -> f32 {
         unwarped: &unwarped,
         light: &light,
         valid: &valid,
-        photo: Some((&unwarped, Homography(DMat3::IDENTITY))),
+        photo: Some((&unwarped, Homography(DMat3::IDENTITY).into())),
     };
     let params = emission::Params { width: side, height: side, ..emission::Params::default() };
     let Ok(found) = emission::run(&input, &params, job.job()) else { return 1.0 };

@@ -10,7 +10,7 @@ use crate::geometry::polygon;
 /// The texture of 500 × 400 texels of an exemplar. The exemplar serves as the photo as well, so unwarping changes
 /// nothing.
 fn continued(exemplar: &Design) -> Emission {
-    let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY)));
+    let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY).into()));
     let params = Params { width: 500, height: 400, ..Params::default() };
     run(&Input { photo, ..exemplar.input() }, &params, Monitor::default().job()).unwrap()
 }
@@ -45,7 +45,8 @@ fn a_lamp_in_a_corner_of_the_photo_does_not_run_through_it() {
     // Five dark pixels lie to the left of the lamp. The slanted border cuts its right end, in the lower rows farther to
     // the right, so that the lamp is as long as the row through its centre.
     let design = slanted(|x, y| (5.0..100.0).contains(&x) && y < 8.0);
-    let lamps = inner(&continued(&design).luminaires, 500, 400);
+    let result = continued(&design);
+    let lamps = inner(&result.luminaires, 500, 400);
     assert!(lamps.len() >= 4, "{}", lamps.len());
     for lamp in lamps {
         assert!((lamp.size - DVec2::new(76.0, 8.0)).abs().max_element() < 2.0, "{}", lamp.size);
@@ -155,7 +156,7 @@ fn a_pattern_continues_where_the_photo_shows_its_end() {
     // must have lamps everywhere all the same.
     let lamp = grid(40.0, 36.0, 14.0, 10.0);
     let exemplar = Design::new(280, 180, |x, y| x > 110.0 && lamp(x, y));
-    let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY)));
+    let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY).into()));
     let params = Params { width: 500, height: 400, law: LawMode::Lattice, ..Params::default() };
     let result = run(&Input { photo, ..exemplar.input() }, &params, Monitor::default().job()).unwrap();
     let cells = (500.0 / 40.0) * (400.0 / 36.0);

@@ -421,7 +421,7 @@ fn a_tone_curve_of_the_camera_contradicts_the_metadata() {
     for source in [Source::Metadata, Source::Pixels] {
         // The exposures differ, so the result keeps to the reference where that is not clipped.
         let params = Params { source, reference: Some(0), ..Params::default() };
-        let (image, report) = run(&all, &times, &params).unwrap();
+        let (image, _) = run(&all, &times, &params).unwrap();
         let shown = image.data.iter().zip(&photos[0].data).filter(|(_, p)| (0.05..0.7).contains(*p));
         let worst = shown.map(|(v, p)| (v / p - 1.0).abs()).fold(0.0, f32::max);
         assert!(worst < 0.2, "{source:?}: {worst}");
