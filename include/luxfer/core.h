@@ -238,9 +238,10 @@ luxfer_status luxfer_init(luxfer_struct_type struct_type,
  * Only the release of the last reference must not overlap with another use of the object.
  *
  * The library prints nothing, not even the message of a defect (LUXFER_INTERNAL). It reads no environment variables,
- * does not end the process on an error and installs no signal handlers. All state belongs to a context, with one
- * exception: an emergency reserve of memory, shared by all contexts of the process. The library uses it for small
- * allocations when the system has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
+ * does not end the process on an error and installs no signal handlers. All state belongs to a context, except for
+ * three things that exist once per process: tables of constants, a hook that suppresses the messages of panics inside
+ * the library, and an emergency reserve of memory. The library uses the reserve for small allocations when the system
+ * has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
  *
  * Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
  * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and

@@ -228,7 +228,7 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  * O and B; see luxfer_emitter_as.
  *
  * A label in quotes restricts an event to an object or a light. The label is the name of a mesh or of its material.
- * Name#0, Name#1, ... are the lamps (connected patches) in the emission texture of the mesh or material Name, numbered
+ * Name#0, Name#1, ... are the lamps (connected regions) in the emission texture of the mesh or material Name, numbered
  * as luxfer_lamps numbers them. light0, light1, ... are the scene's punctual lights in their order, and environment is
  * the scene's environment.
  *
