@@ -18,7 +18,7 @@ pub struct Input<'a> {
     pub light: &'a Image,
     /// 1 where `unwarped` and `light` show the plane, else 0.
     pub valid: &'a Image,
-    /// The photo, which has full resolution, and the homography from unwarped pixels to photo pixels. If absent, the
+    /// The photo, which has full resolution, and the map from unwarped pixels to photo pixels. If absent, the
     /// unwarped image is the finest source.
     pub photo: Option<(&'a Image, PhotoMap)>,
 }
@@ -156,7 +156,9 @@ impl Input<'_> {
             }
         }
         if let Some((_, to_photo)) = self.photo
-            && !to_photo.homography.0.is_finite()
+            && !(to_photo.homography.0.is_finite()
+                && to_photo.lens.centre.is_finite()
+                && to_photo.lens.bend.is_finite())
         {
             return Err(Error::argument("the map from the unwarped image to the photo is not finite"));
         }

@@ -72,7 +72,8 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
     let (bands, mut normals) = (bands?, normals?);
     let fits_of = |y: usize| FitRow::of(&bands[y / BAND], y % BAND, width);
 
-    // Neglect the distortion of the lens: within a window, it changes the derivatives by a few percent.
+    // Neglect the distortion of the lens. At the corners of the photo it changes the derivatives by about three times
+    // its share: with 3 % of barrel distortion by 10 %.
     let ideal = Frustum { lens: Radial::NONE, ..*frustum };
     let origin = ideal.ray(ideal.ndc(0, 0, width, height));
     let step_x = (frustum.right - frustum.left) / (frustum.near * width as f32);

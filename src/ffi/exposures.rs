@@ -45,7 +45,7 @@ pub struct luxfer_merge_params {
     /// Index of the reference; -1, the default: the photo with the most pixels that are well exposed.
     pub reference: i32,
     /// 0, the default: where exposures disagree beyond noise, because something moved, only those are used that agree
-    /// with the reference; 1: all are averaged.
+    /// with the reference, or with the next shorter one that is not clipped where the reference is; 1: all are averaged.
     pub keep_moving: u32,
     /// Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
     /// default 0.03. 0: the photos are not aligned, as for a camera on a tripod.
@@ -53,7 +53,7 @@ pub struct luxfer_merge_params {
     /// Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2 has a
     /// high dynamic range and is nowhere clipped.
     pub saturation: f64,
-    /// Exposure of each photo in any unit, such as seconds, in (0, 1e9]; all 0, the default: see the field source.
+    /// Exposure of each photo in any unit, such as seconds, in [1e-9, 1e9]; all 0, the default: see the field source.
     /// Elements beyond the number of photos must be 0.
     pub exposures: [f64; 16],
 }
@@ -120,7 +120,7 @@ pub struct luxfer_merge_report {
     /// Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values are lower bounds:
     /// those of the shortest exposure.
     pub clipped: f64,
-    /// Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1].
+    /// Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is 1.
     pub moved: f64,
     /// Exposure of each photo relative to the reference.
     pub exposures: [f64; 16],

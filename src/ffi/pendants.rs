@@ -98,7 +98,7 @@ pub struct luxfer_pendants_params {
     /// Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1.
     pub suspension_error: f64,
     /// Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
-    /// a rectification.
+    /// a rectification. Photo and masks must then be those of a lens without distortion.
     pub focal: f64,
     /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
     /// for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It is 0 only

@@ -179,7 +179,6 @@ impl luxfer_stylize_params {
             coherence: self.coherence,
             match_appearance: self.match_appearance,
             seed: self.seed,
-            ..stylize::Params::default()
         };
         params.check()?;
         Ok(params)

@@ -38,9 +38,11 @@ impl Radial {
     /// Errors: `corner` is out of range, also if it is related to the corner farthest from the principal point.
     pub fn new(corner: f64, centre: DVec2, size: DVec2) -> Result<Self> {
         check_range("distortion", corner, MIN_CORNER, MAX_CORNER)?;
-        let bend = corner / (0.25 * size.length_squared());
+        let half_diagonal = 0.25 * size.length_squared();
+        let bend = corner / half_diagonal;
         let farthest = centre.abs().max((size - centre).abs());
-        let at_farthest = bend * farthest.length_squared();
+        // The quotient is exactly 1 for a principal point in the photo's centre, so the limits themselves are allowed.
+        let at_farthest = corner * (farthest.length_squared() / half_diagonal);
         if !(MIN_CORNER..=MAX_CORNER).contains(&at_farthest) {
             return Err(Error::argument(format!(
                 "distortion is {corner}; about the principal point {centre} it must lie in [{:.4}, {:.4}]",
@@ -111,6 +113,15 @@ mod tests {
 
     fn lens(corner: f64) -> Radial {
         Radial::new(corner, 0.5 * SIZE, SIZE).unwrap()
+    }
+
+    #[test]
+    fn the_limits_are_allowed_for_photos_of_any_size() {
+        for size in [DVec2::new(1920.0, 1080.0), DVec2::new(3840.0, 2160.0), DVec2::new(5184.0, 3456.0)] {
+            assert!(
+                Radial::new(MIN_CORNER, 0.5 * size, size).is_ok() && Radial::new(MAX_CORNER, 0.5 * size, size).is_ok()
+            );
+        }
     }
 
     #[test]

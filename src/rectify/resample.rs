@@ -46,8 +46,14 @@ pub fn undistort(photo: &Image, lens: &Radial, job: Job) -> Result<Image> {
 /// Resamples a photo, as [`warp`] does, through a homography and the distortion of the lens at once.
 pub fn warp_photo(source: &Image, to_source: &PhotoMap, width: usize, height: usize, job: Job) -> Result<Image> {
     let PhotoMap { homography, lens } = to_source;
-    if !(homography.0.is_finite() && lens.centre.is_finite() && lens.bend.is_finite()) {
+    if !homography.0.is_finite() {
         return Err(Error::argument("the homography has entries that are not finite"));
+    }
+    if !(lens.centre.is_finite() && lens.bend.is_finite()) {
+        return Err(Error::argument(format!(
+            "the lens has the centre {} and the bend {}; both must be finite",
+            lens.centre, lens.bend
+        )));
     }
     let mut out = Image::new(width, height, source.channels)?;
     let map = Map {

@@ -128,12 +128,16 @@ impl Unwarped {
         let seen = self.to_photo.homography.apply_homogeneous(pixel);
         let ideal = seen.truncate() / seen.z;
         let place = self.to_photo.lens.shown(ideal);
-        // Compute the Jacobian of the homography, and the axes of the ellipse onto which it takes a pixel. The
-        // distortion of the lens hardly changes them.
-        let jacobian = DMat2::from_cols(
+        // Compute the Jacobian of the map into the photo, and the axes of the ellipse onto which it takes a pixel.
+        let through_ideal_lens = DMat2::from_cols(
             (right.truncate() - ideal * right.z) / seen.z,
             (down.truncate() - ideal * down.z) / seen.z,
         );
+        let lens = &self.to_photo.lens;
+        let jacobian = match lens.is_none() {
+            true => through_ideal_lens,
+            false => lens.derivative(place).inverse() * through_ideal_lens,
+        };
         let area = jacobian.determinant().abs();
         let trace = jacobian.x_axis.length_squared() + jacobian.y_axis.length_squared();
         let longest = 0.5 * (trace + (trace * trace - 4.0 * area * area).max(0.0).sqrt());

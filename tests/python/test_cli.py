@@ -200,6 +200,9 @@ class Transfer(Cli):
         words = ("transfer", self.path("photo.png"), self.path("room.glb"), "--exposures", str(self.folder / "dark.png"))
         result = self.json(*words, "--preview-masks", "m.png")
         self.assertEqual([w["code"] for w in result["warnings"] if w["stage"] == "exposures"], [])
+        # The darker picture has a quarter of the photo's values.
+        self.assertEqual(len(result["bracket"]["exposures"]), 2)
+        self.assertAlmostEqual(result["bracket"]["exposures"][1], 0.25, delta=0.01)
         self.error(3, *words, "missing.png", "--preview-masks", "m.png")
 
     def test_strokes_as_text_and_a_surface(self):

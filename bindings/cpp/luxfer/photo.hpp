@@ -160,8 +160,8 @@ public:
         return call(luxfer_emission_set_exemplar, unwarped.get(), light.get(), valid.get());
     }
 
-    /// Sets the photo from which full detail is recovered, and the map from unwarped to photo pixels
-    /// (luxfer_rectify_report.to_photo).
+    /// Sets the photo from which full detail is recovered, as luxfer_rectify_undistort makes it, and the map from
+    /// unwarped to photo pixels (luxfer_rectify_report.to_photo).
     Result<> set_photo(const Image &photo, Numbers<9> to_photo) const {
         return call(luxfer_emission_set_photo, photo.get(), to_photo.data());
     }

@@ -56,8 +56,8 @@ class Emission(StageBase):
         self._call("set_exemplar", *images)
 
     def set_photo(self, photo: ImageLike | None, to_photo: ArrayLike | None = None) -> None:
-        """Sets the photo from which full detail is recovered, and the 3 x 3 homography from unwarped to photo pixels
-        (RectifyReport.to_photo). None means no photo."""
+        """Sets the photo from which full detail is recovered, as Rectify.undistort makes it, and the 3 x 3 homography
+        from unwarped to photo pixels (RectifyReport.to_photo). None means no photo."""
         if photo is None:
             return self._call("set_photo", None, None)
         if to_photo is None:

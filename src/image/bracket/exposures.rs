@@ -4,11 +4,16 @@ use super::frame::{Frame, light};
 use super::params::{Params, Source};
 use super::ratio::Ratio;
 use crate::error::{Error, Result};
+use crate::exec;
 use crate::image::photo::PhotoMetadata;
+use crate::job::Job;
 
 /// Standard deviation of the logarithm of a ratio that metadata state: shutter times, f-numbers and speeds are rounded
 /// to the names of the series, such as 1/15 s for 1/16 s and f/5.6 for f/5.66. [convention: ISO 516, ISO 12232]
 const ROUNDING: f64 = 0.05;
+
+/// Smallest standard error of a measured ratio, so that photos without noise have a finite weight. [rounding]
+const MIN_ERROR: f64 = 1e-6;
 
 /// Metadata and pixels contradict each other if the logarithms of their ratios differ by more than this, a third of a
 /// stop, the finest step of most cameras, and by more than this many standard errors of the measurement. [convention]
@@ -29,17 +34,20 @@ pub fn stated_ratio(a: &PhotoMetadata, b: &PhotoMetadata) -> Option<f64> {
 
 /// Returns the indices of the photos in the order of their exposures, the shortest first: by the caller's exposures, by
 /// the metadata, or else by brightness.
-pub fn order(frames: &[Frame], metadata: &[PhotoMetadata], params: &Params) -> Vec<usize> {
+pub fn order(frames: &[Frame], metadata: &[PhotoMetadata], params: &Params, job: Job) -> Result<Vec<usize>> {
     let stated = || -> Option<Vec<f64>> { metadata.iter().map(|m| stated_ratio(&metadata[0], m)).collect() };
     let keys = if !params.exposures.is_empty() {
         params.exposures.clone()
     } else {
         let stated = if params.source == Source::Pixels { None } else { stated() };
-        stated.unwrap_or_else(|| frames.iter().map(brightness).collect())
+        match stated {
+            Some(stated) => stated,
+            None => exec::map(frames.len(), job, |k| brightness(&frames[k]))?,
+        }
     };
     let mut order: Vec<usize> = (0..frames.len()).collect();
     order.sort_by(|&a, &b| keys[a].total_cmp(&keys[b]));
-    order
+    Ok(order)
 }
 
 /// The mean light of a photo, clipped at 1.
@@ -97,7 +105,7 @@ impl Pair {
                 100.0 * measured.error
             )));
         }
-        let weights = [stated, measured].map(|r| r.error.max(f64::MIN_POSITIVE.sqrt()).powi(-2));
+        let weights = [stated, measured].map(|r| r.error.max(MIN_ERROR).powi(-2));
         let total = weights[0] + weights[1];
         let log = (weights[0] * stated.log + weights[1] * measured.log) / total;
         Ok(Ratio { log, error: total.powf(-0.5) })

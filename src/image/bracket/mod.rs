@@ -38,6 +38,10 @@ use ratio::Ratio;
 /// most the second. [convention]
 const WELL_EXPOSED: [f32; 2] = [0.02, 0.8];
 
+/// Natural logarithm of the largest ratio of two exposures, 1e18: the values of a photo divided by it fit into `f32`.
+/// [rounding]
+const MAX_LOG_RATIO: f64 = 18.0 * std::f64::consts::LN_10 + 1e-9;
+
 /// Merges photos of one view. `metadata` are those of the photos.
 pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job: Job) -> Result<(Image, Report)> {
     check(photos, params, job)?;
@@ -45,9 +49,9 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
     if photos.len() == 1 {
         return Ok((first.try_clone()?, of_one(first, &metadata[0], params)));
     }
-    let mut frames: Vec<Frame> = photos.iter().map(|image| Frame::new(image, params.saturation)).collect();
+    let mut frames = exec::map(photos.len(), job.part(0.0, 0.0), |k| Frame::new(photos[k], params.saturation))?;
     let reference = params.reference.map_or_else(|| best_exposed(&frames, job), Ok)?;
-    let order = exposures::order(&frames, metadata, params);
+    let order = exposures::order(&frames, metadata, params, job.part(0.0, 0.0))?;
     let max_shift = (params.max_shift * first.width.max(first.height) as f64).round() as usize;
     let shifts = align::shifts(&frames, &order, max_shift, job.part(0.0, 0.3))?;
     for (frame, shift) in frames.iter_mut().zip(&shifts) {
@@ -55,6 +59,12 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
     }
     let (ratios, disagreements) = compare(&frames, metadata, &order, params, job.part(0.3, 0.8))?;
     let relative = exposures::chain(&order, &ratios, reference);
+    if let Some(k) = relative.iter().position(|ratio| !(ratio.log.abs() <= MAX_LOG_RATIO)) {
+        return Err(Error::argument(format!(
+            "the exposure of photos[{k}] is {:e} times that of the reference; it must lie in [1e-18, 1e18]",
+            relative[k].log.exp()
+        )));
+    }
     let exposed = |&k: &usize| Exposed { frame: frames[k], exposure: relative[k].log.exp() as f32 };
     let stack = Stack {
         photos: order.iter().map(exposed).collect(),
@@ -140,10 +150,10 @@ fn compare(
         let (short, long) = (&frames[s], &frames[l]);
         let pair = Pair { short: s, long: l, stated: exposures::stated_ratio(&metadata[s], &metadata[l]) };
         let samples = ratio::samples(short, long, size, job.part(0.0, 0.2))?;
-        let ratio = pair.ratio(ratio::measure(&samples, long.clip), params)?;
+        let ratio = pair.ratio(ratio::measure(&samples, long.clip)?, params)?;
         if !params.keep_moving {
             let factor = ratio.log.exp() as f32;
-            let noise = Noise::measure(&samples, factor);
+            let noise = Noise::measure(&samples, factor)?;
             disagreements.push(motion::disagreement([short, long], factor, &noise, size, job.part(0.2, 1.0))?);
         }
         ratios.push(ratio);

@@ -9,7 +9,7 @@ use super::frame::Frame;
 use super::noise::Noise;
 use crate::error::Result;
 use crate::exec;
-use crate::image::Image;
+use crate::image::{Image, try_collect};
 use crate::job::Job;
 
 /// Number of standard deviations of the noise that are not disagreement: at 10 million pixels, chance exceeds five
@@ -111,7 +111,7 @@ impl Pair<'_> {
             };
             (0..width).step_by(step).filter_map(at).collect::<Vec<_>>()
         })?;
-        let mut found = rows.concat();
+        let mut found = try_collect(rows.into_iter().flatten())?;
         if found.len() < MIN_EDGES {
             return Ok(MAX_MISALIGNMENT);
         }

@@ -1,6 +1,8 @@
 //! How far two exposures of one pixel may differ: measured on the photos themselves, at each level of light.
 
 use super::ratio::Sample;
+use crate::error::Result;
+use crate::image::try_push;
 
 /// Levels of light: halves of octaves from 2^-16 to 2^16. [convention]
 const LEVELS: usize = 64;
@@ -26,11 +28,11 @@ const MAD_TO_SIGMA: f32 = 1.4826;
 pub struct Noise([[f32; 2]; LEVELS]);
 
 impl Noise {
-    pub fn measure(samples: &[Sample], ratio: f32) -> Self {
+    pub fn measure(samples: &[Sample], ratio: f32) -> Result<Self> {
         let mut by_level: Vec<Vec<f32>> = vec![Vec::new(); LEVELS];
         for s in samples {
             let light = (s.short + s.long) * ratio / (1.0 + ratio);
-            by_level[level(light)].push((s.long - ratio * s.short) / light);
+            try_push(&mut by_level[level(light)], (s.long - ratio * s.short) / light)?;
         }
         let mut found = [None; LEVELS];
         for (out, values) in found.iter_mut().zip(&mut by_level) {
@@ -41,11 +43,11 @@ impl Noise {
                 [middle.clamp(-MAX_DEVIATION, MAX_DEVIATION), scatter]
             });
         }
-        Self(std::array::from_fn(|k| {
+        Ok(Self(std::array::from_fn(|k| {
             let [deviation, scatter] = nearest(&found, k);
             let light = (LOWEST + (k as f32 + 0.5) / PER_OCTAVE).exp2();
             [deviation, scatter.min(MAX_SCATTER.hypot((MAX_PHOTON_NOISE / light).sqrt()))]
-        }))
+        })))
     }
 
     /// Returns median and standard deviation of the difference at a level of light in the long exposure.

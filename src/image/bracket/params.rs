@@ -17,7 +17,7 @@ pub enum Source {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub source: Source,
-    /// Exposure of each photo in any unit, in `(0, 1e9]`; empty if the library is to find the exposures.
+    /// Exposure of each photo in any unit, in `[1e-9, 1e9]`; empty if the library is to find the exposures.
     pub exposures: Vec<f64>,
     /// Index of the photo that gives the result its scale and its frame; `None`: the photo with the most pixels that
     /// are well exposed.
@@ -56,8 +56,8 @@ impl Params {
             )));
         }
         for (i, &exposure) in self.exposures.iter().enumerate() {
-            if !(exposure > 0.0 && exposure <= 1e9) {
-                return Err(Error::argument(format!("exposures[{i}] is {exposure}; it must lie in (0, 1e9]")));
+            if !(1e-9..=1e9).contains(&exposure) {
+                return Err(Error::argument(format!("exposures[{i}] is {exposure}; it must lie in [1e-9, 1e9]")));
             }
         }
         if let Some(reference) = self.reference.filter(|&r| r >= count) {
@@ -80,7 +80,7 @@ pub struct Report {
     pub photos: Vec<PhotoReport>,
     /// Part of the pixels that are clipped in every exposure that shows them, in `[0, 1]`.
     pub clipped: f64,
-    /// Part of the pixels at which the exposures disagree, in `[0, 1]`.
+    /// Part of the pixels at which the exposures disagree, in `[0, 1]`; 0 with `keep_moving`.
     pub moved: f64,
 }
 

@@ -10,6 +10,7 @@
 use super::frame::Frame;
 use crate::error::Result;
 use crate::exec;
+use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 
 /// Number of pixels to look at; of larger photos, an even lattice of pixels. With 1 % of noise, this many determine the
@@ -78,27 +79,28 @@ pub fn samples(short: &Frame, long: &Frame, [width, height]: [usize; 2], job: Jo
         };
         (0..width).step_by(step).filter_map(sample).collect::<Vec<_>>()
     })?;
-    Ok(rows.concat())
+    try_collect(rows.into_iter().flatten())
 }
 
 /// Measures the ratio of two exposures; `None` if too few pixels are well exposed in both.
-pub fn measure(samples: &[Sample], clip: f32) -> Option<Ratio> {
-    let mut ratio = first_guess(samples)?;
-    let well: Vec<Sample> = samples.iter().filter(|s| is_well_exposed(s, ratio, clip)).copied().collect();
+pub fn measure(samples: &[Sample], clip: f32) -> Result<Option<Ratio>> {
+    let Some(mut ratio) = first_guess(samples) else { return Ok(None) };
+    let well = try_collect(samples.iter().filter(|s| is_well_exposed(s, ratio, clip)).copied())?;
     if well.len() < MIN_PIXELS {
-        return None;
+        return Ok(None);
     }
-    let mut weights = vec![[1.0; 2]; well.len()];
+    let mut weights = try_vec(well.len(), [1.0; 2])?;
+    let mut sizes = try_vec(well.len(), 0.0)?;
     for _ in 0..STEPS {
-        reweigh(&well, ratio, &mut weights);
+        reweigh(&well, ratio, &mut sizes, &mut weights);
         let sums = well
             .iter()
             .zip(&weights)
             .fold([0.0; 2], |sums, (s, [w, _])| [sums[0] + w * f64::from(s.long), sums[1] + w * f64::from(s.short)]);
         ratio = sums[0] / sums[1];
     }
-    let error = error_of(&well, &weights, ratio)?;
-    (ratio.is_finite() && ratio > 0.0).then_some(Ratio { log: ratio.ln(), error })
+    let error = error_of(&well, &weights, ratio).filter(|_| ratio.is_finite() && ratio > 0.0);
+    Ok(error.map(|error| Ratio { log: ratio.ln(), error }))
 }
 
 /// The weighted median of the ratios of single pixels. The weights are the reciprocal variances of the logarithms, for
@@ -132,12 +134,13 @@ fn is_well_exposed(s: &Sample, ratio: f64, clip: f32) -> bool {
 /// Sets Tukey's weights for the residuals `long - ratio * short`, relative to the square root of their expected
 /// variance, and the slopes of the weighted residuals. The variance depends equally on what both photos say of the
 /// light, so that edges that lie differently in the photos have no preferred sign.
-fn reweigh(samples: &[Sample], ratio: f64, weights: &mut [[f64; 2]]) {
+/// `sizes` is working memory of as many elements.
+fn reweigh(samples: &[Sample], ratio: f64, sizes: &mut [f64], weights: &mut [[f64; 2]]) {
     let residual = |s: &Sample| {
         let (short, long) = (f64::from(s.short), f64::from(s.long));
         (long - ratio * short) / (long + ratio * short).sqrt()
     };
-    let mut sizes: Vec<f64> = samples.iter().map(|s| residual(s).abs()).collect();
+    sizes.iter_mut().zip(samples).for_each(|(size, s)| *size = residual(s).abs());
     let middle = sizes.len() / 2;
     let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
     let limit = TUKEY * (MAD_TO_SIGMA * *median).max(MIN_SCATTER);

@@ -303,6 +303,26 @@ fn metadata_are_checked_against_the_pixels() {
 }
 
 #[test]
+fn photos_without_noise_that_are_multiples_of_each_other_have_the_stated_ratio() {
+    let long = Image::from_fn(64, 48, |x, y| [(1 + (7 * x + 13 * y) % 50) as f32 / 64.0; 3]).unwrap();
+    let short = Image { data: long.data.iter().map(|v| v / 64.0).collect(), ..long.clone() };
+    let times = [with_time(1.0), with_time(1.0 / 64.0)];
+    let (image, report) = run(&[&long, &short], &times, &Params { reference: Some(0), ..Params::default() }).unwrap();
+    assert!((64.0 * report.photos[1].exposure - 1.0).abs() < 1e-5, "{}", report.photos[1].exposure);
+    assert_eq!(image.count_non_finite(), 0);
+}
+
+#[test]
+fn exposures_that_f32_cannot_divide_by_are_refused() {
+    let (_, photos) = three(64, 48, 1);
+    let metadata: Vec<PhotoMetadata> = [1.0, 1e-12, 1e8].map(with_time).into();
+    let photos: Vec<&Image> = photos.iter().collect();
+    let params = Params { source: Source::Metadata, reference: Some(1), ..Params::default() };
+    let error = run(&photos, &metadata, &params).unwrap_err();
+    assert!(error.message.contains("1e20") && error.message.contains("[1e-18, 1e18]"), "{error}");
+}
+
+#[test]
 fn stated_ratios_follow_time_speed_and_aperture() {
     let all = |t, n, s| PhotoMetadata { f_number: Some(n), iso: Some(s), ..with_time(t) };
     let ratio = exposures::stated_ratio(&all(0.01, 4.0, 100.0), &all(0.02, 2.8, 200.0)).unwrap();
@@ -335,8 +355,8 @@ fn bad_brackets_are_refused_with_the_parameter_and_its_value() {
         refused(&broken[2..], usual(), &["photos[0] has 1 samples"]);
     }
     refused(&photos, Params { exposures: vec![1.0, 2.0], ..usual() }, &["2 values for 3 photos"]);
-    for value in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        refused(&photos, Params { exposures: vec![1.0, value, 2.0], ..usual() }, &["exposures[1] is", "(0, 1e9]"]);
+    for value in [0.0, -1.0, 1e-40, 2e9, f64::NAN, f64::INFINITY] {
+        refused(&photos, Params { exposures: vec![1.0, value, 2.0], ..usual() }, &["exposures[1] is", "[1e-9, 1e9]"]);
     }
     refused(&photos, Params { reference: Some(3), ..usual() }, &["reference is 3"]);
     refused(&photos, Params { max_shift: 0.3, ..usual() }, &["max_shift is 0.3", "[0, 0.25]"]);

@@ -105,8 +105,10 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     if preview:
         masks_found.draw().save(preview)
         console.wrote(preview)
-        result = {"command": "transfer", "surface": start.surface, **masks_found.facts()}
-        return console.print_result(result, masks_found.words(), start.warnings + described_stages(transfer.warnings))
+        merged = {"bracket": bracket.facts(start.merge)} if start.merge else {}
+        result = {"command": "transfer", "surface": start.surface, **masks_found.facts(), **merged}
+        words = [*masks_found.words(), *([bracket.words(start.merge)] if start.merge else [])]
+        return console.print_result(result, words, start.warnings + described_stages(transfer.warnings))
     assert out is not None
     out.mkdir(parents=True, exist_ok=True)
     masks_found.draw().save(out / "masks.png")
