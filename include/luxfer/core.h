@@ -613,7 +613,8 @@ typedef struct luxfer_merge_params {
     int32_t reference;
     /**
      * 0, the default: where exposures disagree beyond noise, because something moved, only those are used that agree
-     * with the reference; 1: all are averaged.
+     * with the reference, or with the next shorter one that is not clipped where the reference is; 1: all are
+     * averaged.
      */
     uint32_t keep_moving;
     /**
@@ -627,7 +628,7 @@ typedef struct luxfer_merge_params {
      */
     double saturation;
     /**
-     * Exposure of each photo in any unit, such as seconds, in (0, 1e9]; all 0, the default: see the field source.
+     * Exposure of each photo in any unit, such as seconds, in [1e-9, 1e9]; all 0, the default: see the field source.
      * Elements beyond the number of photos must be 0.
      */
     double exposures[16];
@@ -656,7 +657,7 @@ typedef struct luxfer_merge_report {
      * those of the shortest exposure.
      */
     double clipped;
-    /** Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]. */
+    /** Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is 1. */
     double moved;
     /** Exposure of each photo relative to the reference. */
     double exposures[16];

@@ -1095,7 +1095,7 @@ typedef struct luxfer_pendants_params {
     double suspension_error;
     /**
      * Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
-     * a rectification.
+     * a rectification. Photo and masks must then be those of a lens without distortion.
      */
     double focal;
     /**

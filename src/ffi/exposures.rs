@@ -45,7 +45,8 @@ pub struct luxfer_merge_params {
     /// Index of the reference; -1, the default: the photo with the most pixels that are well exposed.
     pub reference: i32,
     /// 0, the default: where exposures disagree beyond noise, because something moved, only those are used that agree
-    /// with the reference, or with the next shorter one that is not clipped where the reference is; 1: all are averaged.
+    /// with the reference, or with the next shorter one that is not clipped where the reference is; 1: all are
+    /// averaged.
     pub keep_moving: u32,
     /// Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
     /// default 0.03. 0: the photos are not aligned, as for a camera on a tripod.

@@ -1118,7 +1118,8 @@ class MergeParams(TypedDict, total=False):
     """Index of the reference; -1, the default: the photo with the most pixels that are well exposed."""
     keep_moving: int
     """0, the default: where exposures disagree beyond noise, because something moved, only those are used that
-    agree with the reference; 1: all are averaged."""
+    agree with the reference, or with the next shorter one that is not clipped where the reference is; 1: all
+    are averaged."""
     max_shift: float
     """Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
     default 0.03. 0: the photos are not aligned, as for a camera on a tripod."""
@@ -1126,7 +1127,7 @@ class MergeParams(TypedDict, total=False):
     """Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2
     has a high dynamic range and is nowhere clipped."""
     exposures: Sequence[float]
-    """Exposure of each photo in any unit, such as seconds, in (0, 1e9]; all 0, the default: see the field
+    """Exposure of each photo in any unit, such as seconds, in [1e-9, 1e9]; all 0, the default: see the field
     source. Elements beyond the number of photos must be 0."""
 
 
@@ -1143,7 +1144,8 @@ class MergeReport:
     """Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values are lower
     bounds: those of the shortest exposure."""
     moved: float
-    """Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]."""
+    """Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is
+    1."""
     exposures: tuple[float, ...]
     """Exposure of each photo relative to the reference."""
     errors: tuple[float, ...]
@@ -2460,7 +2462,7 @@ class PendantsParams(TypedDict, total=False):
     """Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1."""
     focal: float
     """Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not
-    used with a rectification."""
+    used with a rectification. Photo and masks must then be those of a lens without distortion."""
     focal_error: float
     """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0
     stands for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It
