@@ -517,7 +517,9 @@ luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer,
 
 /**
  * Gets the camera of the photo, and the unwarping of the plane. The camera was found from the lines and the lamps of
- * the photo, or set by luxfer_transfer_use_rectify. size is sizeof *view. Any thread.
+ * the photo, or set by luxfer_transfer_use_rectify. If view->undone is not 0, view->to_photo leads into the photo of a
+ * lens without distortion; luxfer_rectify_undistort makes this photo, after a rectification with this distortion.
+ * size is sizeof *view. Any thread.
  * LUXFER_NOT_READY before the stage VIEW has ended.
  */
 luxfer_status luxfer_transfer_get_view(luxfer_transfer *transfer,
