@@ -9,7 +9,7 @@ use glam::{DMat2, DVec2};
 
 /// Range of the coefficient of [`Radial::new`], both for half of the diagonal and for the corner that is farthest from
 /// the principal point. At -1, an ideal lens shows the corner at twice its distance, as a fisheye lens does. Above 1/3,
-/// the map folds over inside the photo; 0.2 keeps the fold 29 % of the distance away from the corner. [convention]
+/// the map folds over inside the photo; 0.2 keeps the fold 29 % of the distance away from the corner. \[convention\]
 pub const MIN_CORNER: f64 = -1.0;
 pub const MAX_CORNER: f64 = 0.2;
 
