@@ -2,8 +2,8 @@
 //! their centres from the luminaire's centre.
 //!
 //! Each face is read as one area, the rectangle that bounds its areas of all emitters. A face whose areas are all
-//! circular is an ellipse: circular faces below or above make a vertical cylinder or a disc, a circular face towards C = 0 or 90 makes a
-//! horizontal cylinder, and three circular faces make an ellipsoid.
+//! circular is an ellipse: circular faces below or above make a vertical cylinder or a disc, a circular face towards
+//! C = 0 or 90 makes a horizontal cylinder, and three circular faces make an ellipsoid.
 
 use super::super::luminaire::Luminaire;
 use super::super::opening::Opening;
