@@ -195,6 +195,20 @@ mod tests {
         }
     }
 
+    /// A first angle of -0 is 0: no plane is there twice.
+    #[test]
+    fn a_first_angle_of_minus_zero_is_zero() {
+        let want = read(QUARTER.as_bytes()).unwrap();
+        for to in ["180", "90", "360"] {
+            let plain = QUARTER.replace("0 45 90\n0 45 90", &format!("0 45 90\n0 45 {to}"));
+            let minus = QUARTER.replace("0 45 90\n0 45 90", &format!("-0 45 90\n-0 45 {to}"));
+            let (plain, minus) = (read(plain.as_bytes()).unwrap(), read(minus.as_bytes()).unwrap());
+            assert_eq!(plain, minus);
+            assert!(minus.planes[0].is_sign_positive() && minus.planes.len() == minus.candela.len() / 3);
+        }
+        assert_eq!(want.planes.len(), 8);
+    }
+
     #[test]
     fn only_editions_before_2002_have_a_ballast_lamp_factor() {
         for (edition, factor) in

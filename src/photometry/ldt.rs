@@ -13,6 +13,9 @@ const MAX_SETS: usize = 20;
 /// flux that reaches the working plane directly; a room index stands for the proportions of a room.
 const ROOM_INDICES: usize = 10;
 
+/// Width in millimetres of an upright rectangle along C = 90: sizes in a file are often whole numbers. [convention]
+const LEAST_WIDTH: f64 = 1.0;
+
 struct Rows<'a, I> {
     lines: I,
     line: usize,
@@ -218,6 +221,21 @@ fn below_horizon(l: &Luminaire) -> Luminaire {
     Luminaire { candela: candela.collect(), ..l.clone() }
 }
 
+/// Returns the length, the width and the height of the opening in millimetres. Only a round opening has no width.
+fn opening(l: &Luminaire) -> [f64; 3] {
+    let [width, length, height] = l.size.map(|m| m * 1e3);
+    if width.min(length) < 0.0 && width.max(length) <= 0.0 {
+        return [-width.min(length), 0.0, height.abs()];
+    }
+    if l.opening().is_none() {
+        // A point stays a point: a length alone would be the diameter of a disc.
+        return [if width == 0.0 { 0.0 } else { length.abs() }, width.abs(), height.abs()];
+    }
+    // Tubes that lie are written as the boxes around them, and upright rectangles with a width.
+    let [width, length, height] = l.bounds().map(|m| m * 1e3);
+    [length, if length > 0.0 { width.max(LEAST_WIDTH) } else { width }, height]
+}
+
 /// Writes a luminaire as a EULUMDAT file: with rotational symmetry if it has a single plane, otherwise without
 /// symmetry.
 ///
@@ -237,10 +255,7 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     let lumens = if l.lamp_flux > 0.0 { l.lamp_flux } else { flux };
     let down = if flux > 0.0 { 100.0 * below_horizon(l).flux() / flux } else { 0.0 };
     let output_ratio = if lumens > 0.0 { 100.0 * flux / lumens } else { 0.0 };
-    let [width, length, height] = l.size.map(|m| m * 1e3);
-    // Only a round opening has no side of positive length. Tubes that lie are written as the boxes around them.
-    let is_round = width.min(length) < 0.0 && width.max(length) <= 0.0;
-    let (length, width) = if is_round { (-width.min(length), 0.0) } else { (length.abs(), width.abs()) };
+    let [length, width, height] = opening(l);
     let mut text = String::new();
     let mut line = |value: &dyn std::fmt::Display| {
         let _ = write!(text, "{value}\r\n");
@@ -255,10 +270,10 @@ pub fn write(luminaire: &Luminaire) -> Result<String> {
     for text in ["", &plain(&l.name), "", "", ""] {
         line(&text);
     }
-    for value in [length, width, height.abs(), length, width] {
+    for value in [length, width, height, length, width] {
         line(&value);
     }
-    l.side_heights.map_or([height.abs(); 4], |heights| heights.map(|m| m * 1e3)).iter().for_each(|h| line(h));
+    l.side_heights.map_or([height; 4], |heights| heights.map(|m| m * 1e3)).iter().for_each(|h| line(h));
     for value in [down, output_ratio, 1.0, 0.0] {
         line(&value);
     }
@@ -356,6 +371,14 @@ mod tests {
             ([-0.4, 0.0, 0.1], [-0.4, -0.4, 0.1]),
             ([1.2, -0.025, -0.025], [1.2, 0.025, 0.025]),
             ([-0.025, 1.2, -0.025], [0.025, 1.2, 0.025]),
+            // LM-63-1995 states tubes with one diameter. An upright rectangle has no width.
+            ([0.0, 1.2, -0.026], [0.026, 1.2, 0.026]),
+            ([1.2, 0.0, -0.026], [1.2, 0.026, 0.026]),
+            ([0.0, 1.2, 0.3], [0.001, 1.2, 0.3]),
+            ([1.2, 0.0, 0.3], [1.2, 0.0, 0.3]),
+            // A point stays a point.
+            ([0.0, 1.2, 0.0], [0.0, 0.0, 0.0]),
+            ([1.2, 0.0, 0.0], [1.2, 0.0, 0.0]),
         ] {
             let l = Luminaire::lambertian("", 1000.0, size);
             assert_eq!(read(write(&l).unwrap().as_bytes()).unwrap().size, want);

@@ -9,6 +9,8 @@ use crate::error::{Error, Result};
 /// # Errors
 /// `Format` if the angles do not ascend, or if their range implies no symmetry.
 pub fn unfold(angles: &[f64], candela: &[f64], gammas: usize) -> Result<(Vec<f64>, Vec<f64>)> {
+    // An angle of -0 is 0: `total_cmp` would tell them apart.
+    let angles: Vec<f64> = angles.iter().map(|c| c + 0.0).collect();
     let (first, last) = (angles[0], angles[angles.len() - 1]);
     if angles.windows(2).any(|w| w[0] >= w[1]) {
         return Err(Error::format("the horizontal angles do not ascend"));
@@ -30,8 +32,8 @@ pub fn unfold(angles: &[f64], candela: &[f64], gammas: usize) -> Result<(Vec<f64
         }
         _ => {
             return Err(Error::format(format!(
-                "the horizontal angles go from {first} to {last}; they must go from 0 to 0, 90, 180 or 360, or from \
-                 90 to 270"
+                "the horizontal angles go from {first} to {last}; they must go from 0 to 0, 90, 180, or an angle above \
+                 180 up to 360, or from 90 to 270"
             )));
         }
     }

@@ -81,6 +81,15 @@ class LuminaireFiles(Case):
         self.assertEqual((product.format, product.name, product.reference), ("ldt", "Panel <1> & 2", "lamp.gldf"))
         chosen = Product.load(context(), f"{self.folder / 'lamp.gldf'}#variant")
         self.assertEqual((chosen.photometry, chosen.reference), (product.photometry, "lamp.gldf#variant"))
+        # Paths that are not in their normal form.
+        folder = os.fspath(self.folder)
+        for path in (f"{folder}//lamp.gldf#0", f"{folder}/./lamp.gldf#0", f"{folder}//./lamp.gldf"):
+            want = "lamp.gldf" + path.partition("lamp.gldf")[2]
+            self.assertEqual(Product.load(context(), path).reference, want, path)
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(folder)
+        self.assertEqual(Product.load(context(), "./lamp.gldf").reference, "lamp.gldf")
+        self.assertEqual(Product.load(context(), "./lamp.gldf#0").reference, "lamp.gldf#0")
         with self.assertRaises(FileNotFoundError):
             Product.load(context(), self.folder / "missing.gldf")
 

@@ -1,13 +1,15 @@
 //! Reads emitters: a photometry, the flux and the power of the lamps, and their colour.
 
 use super::super::luminaire::Luminaire;
-use super::super::sum::sum;
-use super::super::text_lines::MAX_BYTES;
+use super::super::sum::{MAX_PARTS, sum};
+use super::super::text_lines::{MAX_BYTES, MAX_VALUES};
 use super::super::xml::Element;
 use super::super::{ies, ldt, tm33};
 use super::container::Container;
 use super::names::path;
+use super::shape::{self, Shape};
 use crate::error::{Error, ErrorKind, Result};
+use std::cell::Cell;
 
 /// Fluxes in a description are whole lumens: a smaller difference from the photometry's flux is rounding. [convention]
 const WHOLE_LUMEN: f64 = 1.0;
@@ -17,8 +19,13 @@ const MAX_POWER: f64 = 1e9;
 
 /// The definitions of a product.
 pub struct Emitters<'a, 'b> {
-    pub container: &'b Container<'b>,
-    pub definitions: Element<'a>,
+    container: &'b Container<'b>,
+    definitions: Element<'a>,
+    /// The simple geometry of the variant, which replaces the openings of the photometries.
+    shape: Option<Shape>,
+    /// Numbers of the photometries and of the intensities that were read.
+    photometries: Cell<usize>,
+    values: Cell<usize>,
 }
 
 /// What the description says of an emitter's lamps; 0 if it says nothing.
@@ -30,7 +37,11 @@ struct Lamps {
     rendering: f64,
 }
 
-impl<'a> Emitters<'a, '_> {
+impl<'a, 'b> Emitters<'a, 'b> {
+    pub fn new(container: &'b Container<'b>, definitions: Element<'a>, shape: Option<Shape>) -> Self {
+        Self { container, definitions, shape, photometries: Cell::new(0), values: Cell::new(0) }
+    }
+
     /// Finds a definition by its id.
     fn find(&self, list: &str, kind: &str, id: &str) -> Result<Element<'a>> {
         let found = self.definitions.find(list);
@@ -59,11 +70,13 @@ impl<'a> Emitters<'a, '_> {
             "FixedLightEmitter" => self.fixed(light),
             "ChangeableLightEmitter" => self.changeable(light),
             "MultiChannelLightEmitter" => self.channels(light),
-            name => Err(light.error(format_args!("{name} is no kind of light emitter"))),
+            name => {
+                let known = "FixedLightEmitter, ChangeableLightEmitter and MultiChannelLightEmitter";
+                Err(light.error(format_args!("{name} is no kind of light emitter; {known} are read")))
+            }
         };
-        let mut luminaire = found.map_err(|e| e.context(format_args!("emitter {id:?}")))?;
-        turn(light, &mut luminaire)?;
-        Ok(Some(luminaire))
+        let placed = found.and_then(|luminaire| shape::placed(light, luminaire, self.shape.as_ref()));
+        placed.map(Some).map_err(|e| e.context(format_args!("emitter {id:?}")))
     }
 
     fn fixed(&self, light: Element) -> Result<Luminaire> {
@@ -96,19 +109,36 @@ impl<'a> Emitters<'a, '_> {
         let source = self.follow(light, reference, ["LightSources", "MultiChannelLightSource"])?;
         let mut parts = Vec::new();
         for channel in source.find("Channels").into_iter().flat_map(|list| list.all("Channel")) {
+            if parts.len() == MAX_PARTS {
+                return Err(channel.error(format_args!("more than {MAX_PARTS} channels")));
+            }
             let flux = channel.number_at("RatedLuminousFlux", 0.0, MAX_FLUX)?.unwrap_or(0.0);
             parts.push(scaled(self.photometry(channel)?, &Lamps { flux, ..Lamps::default() }));
         }
-        let mut luminaire = sum(parts)?;
-        let power = source.number_at("RatedInputPower", 0.0, MAX_POWER)?.unwrap_or(0.0);
-        if power > 0.0 {
-            luminaire.watts = power;
+        Ok(scaled(sum(parts)?, &lamps(source)?))
+    }
+
+    /// Reads the photometry that `element` refers to. Bounds the number of photometries and of their intensities, as
+    /// many emitters and channels can refer to one large file.
+    fn photometry(&self, element: Element) -> Result<Luminaire> {
+        let count = self.photometries.get() + 1;
+        if count > MAX_PARTS {
+            return Err(element.error(format_args!("the variant refers to more than {MAX_PARTS} photometries")));
         }
+        self.photometries.set(count);
+        let luminaire = self.file(element)?;
+        let values = self.values.get() + luminaire.candela.len();
+        if values > MAX_VALUES {
+            let message =
+                format!("the variant's photometries have {values} intensities; at most {MAX_VALUES} are read");
+            return Err(element.error(message));
+        }
+        self.values.set(values);
         Ok(luminaire)
     }
 
-    /// Reads the photometry that `element` refers to.
-    fn photometry(&self, element: Element) -> Result<Luminaire> {
+    /// Reads the file of the photometry that `element` refers to.
+    fn file(&self, element: Element) -> Result<Luminaire> {
         let reference = ["PhotometryReference", "photometryId"];
         let photometry = self.follow(element, reference, ["Photometries", "Photometry"])?;
         let file = self.follow(photometry, ["PhotometryFileReference", "fileId"], ["Files", "File"])?;
@@ -123,7 +153,9 @@ impl<'a> Emitters<'a, '_> {
             Some("ldc/ies") => ies::read(&bytes),
             Some("ldc/iesxml") => tm33::read(&bytes),
             kind => {
-                let message = format!("the photometry has the content type {kind:?}");
+                let kind = kind.unwrap_or("");
+                let known = "ldc/eulumdat, ldc/ies and ldc/iesxml";
+                let message = format!("the photometry has the content type {kind:?}; {known} are read");
                 Err(Error::new(ErrorKind::Unsupported, message))
             }
         };
@@ -161,64 +193,4 @@ fn scaled(mut luminaire: Luminaire, lamps: &Lamps) -> Luminaire {
         }
     }
     luminaire
-}
-
-/// Turns a luminaire about its axis as the emitter demands, in whole degrees.
-fn turn(light: Element, luminaire: &mut Luminaire) -> Result<()> {
-    let angle = |name: &str| Ok(light.number_at(&format!("Rotation/{name}"), 0.0, 360.0)?.unwrap_or(0.0) % 360.0);
-    let [x, y, z, g0] = [angle("X")?, angle("Y")?, angle("Z")?, angle("G0")?];
-    if x != 0.0 || y != 0.0 {
-        let message = format!(
-            "line {}: the emitter is turned by {x} and {y} degrees about the axes X and Y; only turns about the axis Z \
-             are read",
-            light.line()
-        );
-        return Err(Error::new(ErrorKind::Unsupported, message));
-    }
-    let by = (z + g0) % 360.0;
-    let n = luminaire.gammas.len();
-    if by == 0.0 || luminaire.planes.len() == 1 {
-        return Ok(());
-    }
-    // Interpolate a plane at the turned zero, which the list of planes must have.
-    let zero: Vec<f64> = luminaire.gammas.iter().map(|gamma| luminaire.intensity(-by, *gamma)).collect();
-    let mut planes: Vec<(f64, Vec<f64>)> = luminaire
-        .planes
-        .iter()
-        .zip(luminaire.candela.chunks(n))
-        .map(|(c, values)| ((c + by) % 360.0, values.to_vec()))
-        .collect();
-    if planes.iter().all(|(c, _)| *c != 0.0) {
-        planes.push((0.0, zero));
-    }
-    planes.sort_by(|a, b| a.0.total_cmp(&b.0));
-    luminaire.planes = planes.iter().map(|(c, _)| *c).collect();
-    luminaire.candela = planes.into_iter().flat_map(|(_, values)| values).collect();
-    Ok(())
-}
-
-/// Reads the opening of a luminaire, whose photometry states none, from the simple geometry of its variant.
-pub fn opening_of(definitions: Element, geometry: Element, luminaire: &mut Luminaire) -> Result<()> {
-    let inner = geometry.find("GeometryReferences").unwrap_or(geometry);
-    let id = inner.find("SimpleGeometryReference").and_then(|reference| reference.attribute("geometryId"));
-    let Some(id) = id else { return Ok(()) };
-    let shapes = definitions.find("Geometries").into_iter().flat_map(|list| list.all("SimpleGeometry"));
-    let Some(shape) = shapes.into_iter().find(|shape| shape.attribute("id") == Some(id)) else {
-        return Err(inner.error(format_args!("Geometries has no SimpleGeometry with the id {id:?}")));
-    };
-    let metres = |path: &str| Ok(shape.number_at(path, 0.0, 1e7)?.unwrap_or(0.0) / 1e3);
-    let mut heights = [0.0; 4];
-    for (height, name) in heights.iter_mut().zip(["C0", "C90", "C180", "C270"]) {
-        *height = metres(&format!("C-Heights/{name}"))?;
-    }
-    let height = heights.into_iter().fold(0.0, f64::max);
-    let diameter = metres("CircularEmitter/Diameter")?;
-    luminaire.size = if diameter > 0.0 {
-        [-diameter, -diameter, height]
-    } else {
-        // The width lies along X, towards C = 0, and the length along Y.
-        [metres("RectangularEmitter/Width")?, metres("RectangularEmitter/Length")?, height]
-    };
-    luminaire.side_heights = (diameter == 0.0 && heights.iter().any(|h| *h != height)).then_some(heights);
-    Ok(())
 }

@@ -4,8 +4,9 @@ use super::super::luminaire::{File, Luminaire};
 use super::super::sum::{MAX_PARTS, sum};
 use super::super::xml::{self, Element};
 use super::container::Container;
-use super::emitters::{Emitters, opening_of};
+use super::emitters::Emitters;
 use super::names::{locale, locales};
+use super::shape::Shape;
 use crate::error::{Error, ErrorKind, Result};
 
 /// Reads the luminaire of one variant from a container held in memory. `variant` is its name, its id or its index from
@@ -32,7 +33,8 @@ fn product(container: &Container, root: Element, variant: Option<&str>) -> Resul
     let all: Vec<Element> = product.find("Variants").into_iter().flat_map(|list| list.all("Variant")).collect();
     let chosen = choose(&all, variant)?;
     let references = emitters_of(chosen, definitions)?;
-    let emitters = Emitters { container, definitions };
+    let shape = chosen.find("Geometry").map_or(Ok(None), |geometry| Shape::of(definitions, geometry))?;
+    let emitters = Emitters::new(container, definitions, shape);
     let parts = references.iter().map(|id| emitters.read(id)).collect::<Result<Vec<Option<Luminaire>>>>()?;
     let parts: Vec<Luminaire> = parts.into_iter().flatten().collect();
     if parts.is_empty() {
@@ -41,15 +43,10 @@ fn product(container: &Container, root: Element, variant: Option<&str>) -> Resul
     }
     let emitters = parts.len();
     let mut luminaire = sum(parts)?;
-    if let (None, Some(geometry)) = (luminaire.opening(), chosen.find("Geometry")) {
-        opening_of(definitions, geometry, &mut luminaire)?;
-    }
-    let (name, of_variant) = (locale(product.find("ProductMetaData/Name")), name_of(chosen));
-    luminaire.name = match (name, of_variant) {
-        ("", _) => of_variant.into(),
-        (_, "") => name.into(),
-        _ if name == of_variant => name.into(),
-        _ => format!("{name}, {of_variant}"),
+    // The name of a variant overrules that of the product.
+    luminaire.name = match name_of(chosen) {
+        "" => locale(product.find("ProductMetaData/Name")).into(),
+        name => name.into(),
     };
     luminaire.manufacturer = root.find("Header/Manufacturer").map(Element::line_of_text).unwrap_or_default();
     luminaire.check()?;

@@ -95,7 +95,9 @@ fn product(extra_emitter: &str, extra_variant: &str) -> String {
         source,
         "</FixedLightSource><ChangeableLightSource id=\"tube\"><RatedInputPower>10</RatedInputPower><RatedLuminousFlux>\
          400</RatedLuminousFlux></ChangeableLightSource><MultiChannelLightSource id=\"multi\"><RatedInputPower>33\
-         </RatedInputPower><Channels>",
+         </RatedInputPower>",
+        source,
+        "<Channels>",
         &[channel(100), channel(200)].concat(),
         "</Channels></MultiChannelLightSource></LightSources>\n<Equipments><Equipment id=\"eq\"><LightSourceReference \
          changeableLightSourceId=\"tube\" lightSourceCount=\"3\"/><RatedInputPower>32</RatedInputPower></Equipment>\
@@ -133,7 +135,7 @@ fn variants_are_chosen_and_their_emitters_added_up() {
         file.luminaire
     };
     let one = flux(None);
-    assert_eq!((one.name.as_str(), one.manufacturer.as_str()), ("Product, One", "Works"));
+    assert_eq!((one.name.as_str(), one.manufacturer.as_str()), ("One", "Works"));
     assert_eq!((one.watts, one.temperature, one.rendering, one.lamp_flux), (25.0, 3000.0, 90.0, 1000.0));
     assert!((one.flux() - lamp(1000.0).flux()).abs() < 1e-9);
     for name in ["One", "One-de", "v-1", "0"] {
@@ -151,6 +153,11 @@ fn variants_are_chosen_and_their_emitters_added_up() {
     );
     let four = flux(Some("3"));
     assert!((four.flux() / 300.0 - 1.0).abs() < 1e-3 && four.watts == 33.0, "{}", four.flux());
+    assert_eq!((four.temperature, four.rendering), (3000.0, 90.0));
+    // A variant without a name has that of the product.
+    let unnamed =
+        product("", "<Variant id=\"v-6\"><Geometry><EmitterReference emitterId=\"same\"/></Geometry></Variant>");
+    assert_eq!(read(&container(&unnamed), Some("v-6")).unwrap().luminaire.name, "Product");
     let error = read(&bytes, Some("Dark")).unwrap_err();
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains("normal operation"), "{error}");
     let error = read(&bytes, Some("Six")).unwrap_err();
@@ -202,21 +209,44 @@ fn a_single_emitter_needs_no_reference() {
     assert_eq!(read_of(&two).unwrap_err().kind, ErrorKind::Unsupported);
 }
 
-/// A photometry without an opening takes it from the simple geometry.
+/// The simple geometry replaces the opening of the photometry. The photometry's heights stay if it states none.
 #[test]
 fn simple_geometry_makes_the_opening() {
-    let point = ldt::write(&Luminaire { size: [0.0; 3], ..lamp(1000.0) }).unwrap();
-    let read_with = |l: &Luminaire, shape: [&str; 2]| {
-        let text = product_of(&write(l, NOW).unwrap()).replace(shape[0], shape[1]);
-        read(&archive(&[("product.xml", text.as_bytes()), ("ldc/photometry.ldt", point.as_bytes())]), None)
-            .unwrap()
-            .luminaire
+    let read_with = |l: &Luminaire, photometry: &Luminaire, change: &dyn Fn(&str) -> String| {
+        let text = change(&product_of(&write(l, NOW).unwrap()));
+        let photometry = ldt::write(photometry).unwrap();
+        let bytes = archive(&[("product.xml", text.as_bytes()), ("ldc/photometry.ldt", photometry.as_bytes())]);
+        read(&bytes, None).unwrap().luminaire
     };
-    let l = Luminaire { size: [0.6, 1.2, 0.08], side_heights: Some([0.08, 0.0, 0.08, 0.0]), ..lamp(1000.0) };
-    let found = read_with(&l, ["", ""]);
-    assert_eq!((found.size, found.side_heights), (l.size, l.side_heights));
-    let round = Luminaire { size: [-0.4, -0.4, 0.1], ..lamp(1000.0) };
-    assert_eq!(read_with(&round, ["", ""]).size, round.size);
+    let same = |text: &str| text.to_string();
+    let without = |name: &'static str| {
+        move |text: &str| {
+            let (start, end) = (format!("<{name}>"), format!("</{name}>"));
+            format!("{}{}", text.split_once(&start).unwrap().0, text.split_once(&end).unwrap().1)
+        }
+    };
+    let with_size = |size: [f64; 3], side_heights| Luminaire { size, side_heights, ..lamp(1000.0) };
+    let uneven = with_size([0.6, 1.2, 0.08], Some([0.08, 0.0, 0.08, 0.0]));
+    let round = with_size([-0.4, -0.4, 0.1], None);
+    let point = with_size([0.0; 3], None);
+    let other = with_size([0.3, 0.5, 0.04], Some([0.04, 0.02, 0.04, 0.02]));
+    for photometry in [&point, &other, &round] {
+        for l in [&uneven, &round] {
+            let found = read_with(l, photometry, &same);
+            assert_eq!((found.size, found.side_heights), (l.size, l.side_heights));
+        }
+    }
+    let no_heights = without("C-Heights");
+    let found = read_with(&uneven, &other, &no_heights);
+    assert_eq!((found.size, found.side_heights), ([0.6, 1.2, 0.04], other.side_heights));
+    let found = read_with(&round, &other, &no_heights);
+    assert_eq!((found.size, found.side_heights), ([-0.4, -0.4, 0.04], None));
+    // A geometry without a luminous face leaves that of the photometry.
+    let found = read_with(&uneven, &other, &|text| no_heights(&without("RectangularEmitter")(text)));
+    assert_eq!((found.size, found.side_heights), (other.size, other.side_heights));
+    // A sphere is written as a cylinder, as in its EULUMDAT file.
+    let sphere = with_size([-0.3, -0.3, -0.3], None);
+    assert_eq!(read_with(&sphere, &sphere, &same).size, [-0.3, -0.3, 0.3]);
 }
 
 fn product_of(container: &[u8]) -> String {
@@ -224,26 +254,60 @@ fn product_of(container: &[u8]) -> String {
     String::from_utf8(container.file("product.xml", 1 << 20).unwrap()).unwrap()
 }
 
-/// Turning by 90 degrees about the axis moves the planes; other turns are refused.
+/// Turning about the axis moves the planes and the opening; other turns are refused.
 #[test]
 fn emitters_are_turned_about_their_axis() {
     let l = Luminaire {
         gammas: vec![0.0, 90.0],
         planes: vec![0.0, 100.0, 180.0],
         candela: vec![5.0, 1.0, 5.0, 2.0, 5.0, 3.0],
+        size: [0.6, 1.2, 0.08],
+        side_heights: Some([0.08, 0.02, 0.0, 0.04]),
         ..lamp(1000.0)
     };
-    let text = product_of(&write(&l, NOW).unwrap());
-    let photometry = ldt::write(&l).unwrap();
-    let turned = |rotation: &str| {
+    // The description of a point has no simple geometry, which would not be turned.
+    let text = product_of(&write(&Luminaire { size: [0.0; 3], ..l.clone() }, NOW).unwrap());
+    let with_text = |text: &str, l: &Luminaire, rotation: &str| {
         let text = text.replace("<FixedLightEmitter>", &format!("<FixedLightEmitter><Rotation>{rotation}</Rotation>"));
+        let photometry = ldt::write(l).unwrap();
         read(&archive(&[("product.xml", text.as_bytes()), ("ldc/photometry.ldt", photometry.as_bytes())]), None)
     };
-    let found = turned("<X>0</X><Y>360</Y><Z>60</Z><G0>30</G0>").unwrap().luminaire;
-    for c in [0.0, 33.0, 90.0, 190.0, 270.0, 300.0] {
-        assert!((found.intensity(c + 90.0, 90.0) - l.intensity(c, 90.0)).abs() < 1e-9, "{c}");
+    let turned = |l: &Luminaire, rotation: &str| with_text(&text, l, rotation);
+    let by = |l: &Luminaire, angle: f64| turned(l, &format!("<X>0</X><Y>360</Y><Z>{angle}</Z><G0>0</G0>"));
+    let found = turned(&l, "<X>0</X><Y>360</Y><Z>60</Z><G0>30</G0>").unwrap().luminaire;
+    assert_eq!(found, by(&l, 90.0).unwrap().luminaire);
+    let alike = Luminaire { gammas: vec![0.0, 90.0], planes: vec![0.0], candela: vec![5.0, 1.0], ..l.clone() };
+    for (angle, size, heights) in [
+        (0.0, [0.6, 1.2, 0.08], [0.08, 0.02, 0.0, 0.04]),
+        (90.0, [1.2, 0.6, 0.08], [0.04, 0.08, 0.02, 0.0]),
+        (180.0, [0.6, 1.2, 0.08], [0.0, 0.04, 0.08, 0.02]),
+        (270.0, [1.2, 0.6, 0.08], [0.02, 0.0, 0.04, 0.08]),
+    ] {
+        // A distribution with one plane has an opening to turn, too.
+        for l in [&l, &alike] {
+            let found = by(l, angle).unwrap().luminaire;
+            assert_eq!((found.size, found.side_heights), (size, Some(heights)), "{angle}");
+            for c in [0.0, 33.0, 90.0, 190.0, 270.0, 300.0] {
+                assert!((found.intensity(c + angle, 90.0) - l.intensity(c, 90.0)).abs() < 1e-9, "{angle} {c}");
+            }
+        }
     }
-    let error = turned("<X>90</X><Y>0</Y><Z>0</Z><G0>0</G0>").unwrap_err();
+    // Other angles turn only round openings, and those that the simple geometry replaces.
+    let error = by(&l, 30.0).unwrap_err();
+    let says = "turned by 30 degrees about the axis Z, and its opening of 0.6 x 1.2 x 0.08 m is not round";
+    assert!(error.kind == ErrorKind::Unsupported && error.message.contains(says), "{error}");
+    for size in [[0.0; 3], [-0.4, -0.4, 0.1]] {
+        let l = Luminaire { size, side_heights: None, ..l.clone() };
+        let found = by(&l, 30.0).unwrap().luminaire;
+        assert_eq!(found.size, size);
+        assert!((found.intensity(130.0, 90.0) - 2.0).abs() < 1e-9);
+    }
+    for angle in [30, 90] {
+        let rotation = format!("<X>0</X><Y>0</Y><Z>{angle}</Z><G0>0</G0>");
+        let whole = product_of(&write(&l, NOW).unwrap());
+        assert_eq!(with_text(&whole, &l, &rotation).unwrap().luminaire.size, l.size);
+    }
+    let error = turned(&l, "<X>90</X><Y>0</Y><Z>0</Z><G0>0</G0>").unwrap_err();
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains("90 and 0 degrees"), "{error}");
 }
 
@@ -273,7 +337,10 @@ fn wrong_descriptions_are_refused() {
     }
     let error = says(&with("type=\"localFileName\">A", "type=\"url\">https://a.b/A"), "not in the container");
     assert_eq!(error.kind, ErrorKind::Unsupported);
-    says(&with("ldc/eulumdat", "image/png"), "image/png");
+    says(&with("ldc/eulumdat", "image/png"), "type \"image/png\"; ldc/eulumdat, ldc/ies and ldc/iesxml are read");
+    let laser = good.replace("FixedLightEmitter", "LaserLightEmitter");
+    let known = "FixedLightEmitter, ChangeableLightEmitter and MultiChannelLightEmitter";
+    says(&container(&laser), &format!("LaserLightEmitter is no kind of light emitter; {known} are read"));
     says(&with("<RatedLuminousFlux>1000<", "<RatedLuminousFlux>-1<"), "RatedLuminousFlux is -1");
     says(&container(&good.replace("Variant>", "Other>").replace("<Variant ", "<Other ")), "no variants");
     says(&container("<!DOCTYPE a [<!ENTITY b \"c\">]><Root/>"), "DTD");
@@ -281,6 +348,44 @@ fn wrong_descriptions_are_refused() {
     let variant = format!("<Variant id=\"many\"><Name/><Geometry>{many}</Geometry></Variant>");
     let error = read(&container(&product("", &variant)), Some("many")).unwrap_err();
     assert!(error.message.contains("65 emitters"), "{error}");
+}
+
+/// Many channels and emitters that refer to one photometry are refused before it is read for each.
+#[test]
+fn floods_of_photometries_are_refused() {
+    let good = product(
+        "",
+        "<Variant id=\"twice\"><Geometry><ModelGeometryReference><EmitterReference emitterId=\"channels\"/>\
+        <EmitterReference emitterId=\"channels\"/></ModelGeometryReference></Geometry></Variant>",
+    );
+    let start = good.find("<Channel ").unwrap();
+    let end = start + good[start..].find("</Channel>").unwrap() + "</Channel>".len();
+    let with_channels = |count: usize| good.replacen(&good[start..end], &good[start..end].repeat(count), 1);
+    let refused = |count: usize, variant: &str, what: &str| {
+        let error = read(&container(&with_channels(count)), Some(variant)).unwrap_err();
+        assert!(error.message.contains(what), "{error}");
+    };
+    refused(64, "Channels", "more than 64 channels");
+    refused(100_000, "Channels", "more than 64 channels");
+    refused(32, "twice", "the variant refers to more than 64 photometries");
+    let most = read(&container(&with_channels(63)), Some("Channels")).unwrap().luminaire;
+    assert!((most.flux() / 6500.0 - 1.0).abs() < 1e-3, "{}", most.flux());
+    assert_eq!(read(&container(&with_channels(31)), Some("twice")).unwrap().emitters, 2);
+    // A file with as many intensities as are read, of which two are more.
+    let large = Luminaire {
+        planes: (0..2048).map(|i| f64::from(i) * 360.0 / 2048.0).collect(),
+        gammas: (0..2048).map(|i| f64::from(i) * 180.0 / 2047.0).collect(),
+        candela: vec![0.0; 2048 * 2048],
+        ..lamp(0.0)
+    };
+    let ldt = ldt::write(&large).unwrap();
+    for (variant, is_read) in [("One", true), ("Channels", false)] {
+        let bytes = archive(&[("product.xml", good.as_bytes()), ("ldc/a.ldt", ldt.as_bytes())]);
+        match read(&bytes, Some(variant)) {
+            Ok(_) => assert!(is_read),
+            Err(e) => assert!(!is_read && e.message.contains("8388608 intensities; at most 4194304 are read"), "{e}"),
+        }
+    }
 }
 
 #[test]

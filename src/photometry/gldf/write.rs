@@ -142,7 +142,11 @@ fn definitions(l: &Luminaire, out: &mut Writer) {
 /// Writes the opening as a box or a cylinder with its luminous face below and its luminous heights, in millimetres.
 fn geometry(l: &Luminaire, opening: &Opening, out: &mut Writer) {
     let [width, length, height] = l.bounds();
-    let is_cylinder = matches!(opening, Opening::Cylinder { axis: 2, diameters: [a, b], .. } if a == b);
+    let is_cylinder = match opening {
+        Opening::Cylinder { axis, diameters: [a, b], .. } => *axis == 2 && a == b,
+        Opening::Ellipsoid(_) => width == length,
+        Opening::Box { .. } => false,
+    };
     let heights = match *opening {
         Opening::Box { heights, .. } => heights,
         _ => [height; 4],

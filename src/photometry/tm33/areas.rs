@@ -1,9 +1,9 @@
 //! Emission areas: the luminous parts of the faces of a box, which TM-33 states by their sizes and by the offsets of
 //! their centres from the luminaire's centre.
 //!
-//! Each face is read as one area, the rectangle that bounds its areas. A face whose areas are circular is an ellipse:
-//! circular faces below or above make a vertical cylinder or a disc, a circular face towards C = 0 or 90 makes a
-//! horizontal cylinder, and three circular faces make an ellipsoid.
+//! Each face is read as one area, the rectangle that bounds its areas of all emitters. A face whose areas are all
+//! circular is an ellipse: circular faces below or above make a vertical cylinder or a disc, a circular face towards
+//! C = 0 or 90 makes a horizontal cylinder, and three circular faces make an ellipsoid.
 
 use super::super::luminaire::Luminaire;
 use super::super::opening::Opening;
@@ -46,12 +46,14 @@ struct Area {
     is_round: bool,
 }
 
-/// Reads the emission areas of an emitter into the size of the luminaire's opening.
-pub fn read(emitter: Element, luminaire: &mut Luminaire) -> Result<()> {
-    let Some(areas) = emitter.find("EmissionAreas") else { return Ok(()) };
+/// Reads the emission areas of emitters into the size of the luminaire's opening.
+pub fn read(emitters: &[Element], luminaire: &mut Luminaire) -> Result<()> {
     let mut found = [None; 6];
     for (slot, face) in found.iter_mut().zip(&FACES) {
-        *slot = areas.find(face.name).map(|element| bounds(element, face)).transpose()?.flatten();
+        *slot = bounds(emitters, face)?;
+    }
+    if found.iter().all(Option::is_none) {
+        return Ok(());
     }
     let largest = |values: [Option<f64>; 4]| values.into_iter().flatten().fold(0.0, f64::max);
     let size_of = |i: usize, side: usize| found[i].map(|area| area.sizes[side]);
@@ -76,17 +78,18 @@ pub fn read(emitter: Element, luminaire: &mut Luminaire) -> Result<()> {
 }
 
 /// Returns the bounds of the areas on a face; `None` if it has none.
-fn bounds(element: Element, face: &Face) -> Result<Option<Area>> {
+fn bounds(emitters: &[Element], face: &Face) -> Result<Option<Area>> {
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-    let mut is_round = false;
-    for area in element.all(face.area) {
+    let mut is_round = true;
+    let faces = emitters.iter().filter_map(|emitter| emitter.find("EmissionAreas")?.find(face.name));
+    for area in faces.flat_map(|element| element.all(face.area)) {
         for (side, [low, high]) in face.sides.iter().zip(&mut range) {
             let size = area.number_at(side, 0.0, MAX_LENGTH)?.unwrap_or(0.0);
             let offset = area.number_at(&format!("{side}Offset"), -MAX_LENGTH, MAX_LENGTH)?.unwrap_or(0.0);
             *low = low.min(offset - size / 2.0);
             *high = high.max(offset + size / 2.0);
         }
-        is_round |= matches!(area.text_at("Circular").to_ascii_lowercase().as_str(), "true" | "1");
+        is_round &= matches!(area.text_at("Circular").to_ascii_lowercase().as_str(), "true" | "1");
     }
     let sizes = range.map(|[low, high]| high - low);
     Ok(sizes.iter().all(|size| size.is_finite()).then_some(Area { sizes, is_round }))

@@ -29,7 +29,7 @@ pub fn read(element: Element) -> Result<Distribution> {
         angles.dedup();
         angles
     };
-    let (stored, gammas) = (angles(0), angles(1));
+    let (mut stored, gammas) = (angles(0), angles(1));
     for (what, name, angles) in [("horizontal", "NumberHorz", &stored), ("vertical", "NumberVert", &gammas)] {
         if angles.len() > MAX_ANGLES {
             let n = angles.len();
@@ -41,8 +41,10 @@ pub fn read(element: Element) -> Result<Distribution> {
             return Err(element.error(message));
         }
     }
-    let values = grid(element, &points, &stored, &gammas)?;
-    check_symmetry(element, &stored)?;
+    let mut values = grid(element, &points, &stored, &gammas)?;
+    if check_symmetry(element, &stored)? {
+        (stored, values) = mirrored(&stored, &values, gammas.len());
+    }
     let (planes, candela) =
         unfold(&stored, &values, gammas.len()).map_err(|e| e.context(format_args!("line {}", element.line())))?;
     Ok(Distribution { planes, gammas, candela })
@@ -67,11 +69,7 @@ fn points(element: Element) -> Result<Vec<Point>> {
             found.unwrap_or_else(|| Err(child.error(format_args!("an intensity has no attribute {}", names[0]))))
         };
         let (c, gamma) = (angle(["h", "horz", "horizontal"], 360.0)?, angle(["v", "vert", "vertical"], 180.0)?);
-        let value = match child.text().parse() {
-            Ok(value) if (0.0..=MAX_INTENSITY).contains(&value) => value,
-            _ => child.number(0.0, MAX_INTENSITY)?,
-        };
-        points.push([c, gamma, value]);
+        points.push([c, gamma, child.number(0.0, MAX_INTENSITY)?]);
     }
     Ok(points)
 }
@@ -111,24 +109,44 @@ fn grid(element: Element, points: &[Point], planes: &[f64], gammas: &[f64]) -> R
     }
 }
 
+/// Mirrors the planes from 270 through 0 to 90 about the plane through 90 and 270: they go from 90 to 270 then.
+fn mirrored(planes: &[f64], values: &[f64], gammas: usize) -> (Vec<f64>, Vec<f64>) {
+    let images = planes.iter().map(|c| (180.0 - c).rem_euclid(360.0)).zip(values.chunks(gammas));
+    let mut images: Vec<(f64, &[f64])> = images.collect();
+    images.sort_by(|a, b| a.0.total_cmp(&b.0));
+    // The planes at 0 and 360 are one.
+    images.dedup_by(|a, b| a.0 == b.0);
+    (images.iter().map(|(c, _)| *c).collect(), images.iter().flat_map(|(_, values)| values.iter().copied()).collect())
+}
+
 /// Checks that the planes cover what the stated symmetry needs. The symmetry itself follows from their range, as in
-/// TM-33-18, which has no element for it.
-fn check_symmetry(element: Element, planes: &[f64]) -> Result<()> {
+/// TM-33-18, which has no element for it. Returns whether the planes are the half from 270 through 0 to 90, which their
+/// range does not tell from the whole circle.
+fn check_symmetry(element: Element, planes: &[f64]) -> Result<bool> {
     let stated = [element.text_at("Symm"), element.text_at("SymmType")].concat();
     let symmetry: String = stated.chars().filter(|c| c.is_ascii_alphanumeric()).collect();
     let (first, last) = (planes[0], planes[planes.len() - 1]);
     let is_whole = first == 0.0 && last > 180.0;
-    let is_covered = match symmetry.to_ascii_lowercase().as_str() {
+    let is_behind = |c: &f64| *c > 90.0 && *c < 270.0;
+    let is_before_90 = planes.contains(&90.0) && planes.contains(&270.0) && !planes.iter().any(is_behind);
+    let symmetry = symmetry.to_ascii_lowercase();
+    if symmetry == "symmbi90" && is_before_90 {
+        return Ok(true);
+    }
+    let is_covered = match symmetry.as_str() {
         "symmnone" | "symmarbitrary" => is_whole,
         "symmbi0" => is_whole || (first, last) == (0.0, 180.0),
-        "symmbi90" => is_whole || (first, last) == (90.0, 270.0),
+        "symmbi90" => is_whole && planes.iter().any(is_behind) || (first, last) == (90.0, 270.0),
         "symmquad" => is_whole || (first == 0.0 && (last == 90.0 || last == 180.0)),
         "symmfull" | "" => true,
-        _ => return Err(element.error(format_args!("the symmetry is {stated:?}, which TM-33 does not define"))),
+        _ => {
+            let known = "Symm_None, Symm_Arbitrary, Symm_Bi_0, Symm_Bi_90, Symm_Quad and Symm_Full";
+            return Err(element.error(format_args!("the symmetry is {stated:?}; {known} are read")));
+        }
     };
     if !is_covered {
         let message = format!("the symmetry is {stated}, but the horizontal angles go from {first} to {last}");
         return Err(element.error(message));
     }
-    Ok(())
+    Ok(false)
 }

@@ -14,8 +14,8 @@ fn is_root(name: &str) -> bool {
 /// Reads a TM-33 file held in memory. The distributions of several emitters are added up.
 ///
 /// # Errors
-/// `Format`, with the line, if the file is malformed; `Unsupported` for photometry of types A and B, for directions
-/// that form no grid, and for files that state no luminous intensities.
+/// `Format`, with the line, if the file is malformed; `Unsupported` for photometry of other types than C, for
+/// directions that form no grid, and for files that state no luminous intensities.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     read_file(bytes).map(|file| file.luminaire)
 }
@@ -31,27 +31,28 @@ pub fn read_file(bytes: &[u8]) -> Result<File> {
     if !is_root(root.name()) {
         return Err(root.error(format_args!("the root is {:?}; a TM-33 file has the root IESTM33", root.name())));
     }
-    check_type(root)?;
-    let mut parts = Vec::new();
+    check_type(root, &["Equipment/Gonioradiometer/Type", "Equipment/Goniometer/GoniometerType"])?;
+    let (mut parts, mut emitters) = (Vec::new(), Vec::new());
     for emitter in root.all("Emitter") {
         if parts.len() == MAX_PARTS {
             return Err(emitter.error(format_args!("more than {MAX_PARTS} emitters")));
         }
         if let Some(element) = luminous(emitter) {
             parts.push(part(emitter, element)?);
+            emitters.push(emitter);
         }
     }
     if parts.is_empty() {
         let message = "the file states no luminous intensities (Emitter/LuminousData)";
         return Err(Error::new(ErrorKind::Unsupported, message));
     }
-    let emitters = parts.len();
     let mut luminaire = sum(parts)?;
+    areas::read(&emitters, &mut luminaire)?;
     let names = ["Header/Description", "Header/CatalogNumber"].into_iter().filter_map(|path| root.find(path));
     luminaire.name = names.map(Element::line_of_text).find(|name| !name.is_empty()).unwrap_or_default();
     luminaire.manufacturer = root.find("Header/Manufacturer").map(Element::line_of_text).unwrap_or_default();
     luminaire.check()?;
-    Ok(File { luminaire, variants: 1, emitters })
+    Ok(File { luminaire, variants: 1, emitters: emitters.len() })
 }
 
 /// Finds the element that holds the luminous intensities of an emitter.
@@ -64,22 +65,24 @@ fn luminous(emitter: Element) -> Option<Element> {
     found.or(other)
 }
 
-/// Refuses goniometers of types A and B. A file that states no type has type C.
-fn check_type(root: Element) -> Result<()> {
-    let stated =
-        ["Equipment/Gonioradiometer/Type", "Equipment/Goniometer/GoniometerType"].map(|path| root.text_at(path));
-    let kind = stated.concat();
-    let letters: String = kind.chars().filter(char::is_ascii_alphanumeric).collect();
-    let letters = letters.to_ascii_uppercase();
-    if ["CIEA", "CIEB", "IESA", "IESB", "TYPEA", "TYPEB"].contains(&letters.as_str()) {
-        let message = format!("the goniometer has the type {kind:?}; only type C is read");
-        return Err(Error::new(ErrorKind::Unsupported, message));
+/// Refuses photometry of other types than C, which elements at `paths` may state. A file that states none has type C.
+fn check_type(element: Element, paths: &[&str]) -> Result<()> {
+    for found in paths.iter().filter_map(|path| element.find(path)) {
+        let letters: String = found.text().chars().filter(char::is_ascii_alphanumeric).collect();
+        if !["", "C", "CIEC", "IESC", "TYPEC"].contains(&letters.to_ascii_uppercase().as_str()) {
+            let (line, kind) = (found.line(), found.text());
+            let message =
+                format!("line {line}: the photometry has the type {kind:?}; only type C is read, as in IES_C or CIE_C");
+            return Err(Error::new(ErrorKind::Unsupported, message));
+        }
     }
     Ok(())
 }
 
 /// Reads an emitter whose intensities are in `element`.
 fn part(emitter: Element, element: Element) -> Result<Luminaire> {
+    check_type(emitter, &["PhotometryType", "LuminousData/PhotometryType"])?;
+    check_type(element, &["PhotometryType"])?;
     let found = intensities::read(element)?;
     // As in LM-63, intensities hold for the full flux of the lamps, and the ballast may reduce it.
     let multiplier = element.number_at("Multiplier", 0.0, 1e9)?.unwrap_or(1.0);
@@ -95,7 +98,7 @@ fn part(emitter: Element, element: Element) -> Result<Luminaire> {
         let found = paths.into_iter().find_map(|path| emitter.number_at(path, 0.0, high).transpose());
         Ok(found.transpose()?.unwrap_or(0.0))
     };
-    let mut luminaire = Luminaire {
+    Ok(Luminaire {
         gammas: found.gammas,
         planes: found.planes,
         candela: found.candela.iter().map(|v| v * multiplier * ballast * per_lamps).collect(),
@@ -104,7 +107,5 @@ fn part(emitter: Element, element: Element) -> Result<Luminaire> {
         temperature: first(["ColorTemperature/FixedCCT", "CCT"], 1e6)?,
         rendering: first(["ColorRendering/CIE_CRI/Ra", "ColorRendering/Ra"], 100.0)?,
         ..Luminaire::lambertian("", 0.0, [0.0; 3])
-    };
-    areas::read(emitter, &mut luminaire)?;
-    Ok(luminaire)
+    })
 }

@@ -104,6 +104,88 @@ fn emission_areas_make_the_opening() {
     assert_eq!(read(file(&points(&QUARTER), disc).as_bytes()).unwrap().size, [-0.4, -0.4, 0.0]);
 }
 
+/// The opening of two emitters bounds the areas of both: a panel below, and a panel above beside it, at other heights.
+/// Emitters without luminous intensities count for nothing.
+#[test]
+fn emission_areas_of_all_emitters_make_the_opening() {
+    let areas = |face: &str, length: f64, offset: f64, more: &str| {
+        format!(
+            "<EmissionAreas><{face}Face><{face}Area><Length>{length}</Length><Width>0.3</Width><LengthOffset>{offset}\
+             </LengthOffset>{more}</{face}Area></{face}Face></EmissionAreas>"
+        )
+    };
+    let with = |first: &str, second: &str| {
+        let text = file(&points(&QUARTER), first);
+        let emitter = text[text.find("<Emitter>").unwrap()..text.find("</IESTM33>").unwrap()].replace(first, second);
+        let dark = emitter.replace("LuminousData", "PhotonData").replace("0.3<", "9<");
+        read(text.replace("</IESTM33>", &format!("{emitter}{dark}</IESTM33>")).as_bytes()).unwrap()
+    };
+    // From -0.9 to -0.1 and from 0.3 to 0.9 on one face; each on its own face.
+    let [left, right] = [areas("Bottom", 0.8, -0.5, ""), areas("Bottom", 0.6, 0.6, "")];
+    let both = with(&left, &right);
+    assert!((both.size[1] - 1.8).abs() < 1e-12 && both.size[0] == 0.3 && both.size[2] == 0.0, "{:?}", both.size);
+    assert_eq!(with(&left, &areas("Top", 1.5, 0.0, "")).size, [0.3, 1.5, 0.0]);
+    // Two discs in one place are a disc; a disc and a rectangle are a rectangle.
+    let round = areas("Bottom", 0.3, 0.0, "<Circular>true</Circular>");
+    assert_eq!(with(&round, &round).size, [-0.3, -0.3, 0.0]);
+    assert_eq!(with(&round, &areas("Bottom", 0.3, 0.0, "")).size, [0.3, 0.3, 0.0]);
+    assert_eq!(with(&left, "<!-- none -->").size, [0.3, 0.8, 0.0]);
+}
+
+/// Half a distribution with the symmetry about the plane through 90 and 270, stored behind that plane or before it.
+#[test]
+fn both_halves_about_c90_are_unfolded() {
+    let symmetric = |values: &[(f64, f64)]| {
+        let list: Vec<_> = values.iter().flat_map(|(c, v)| [(*c, 0.0, 50.0), (*c, 90.0, *v)]).collect();
+        let stated = "</AbsolutePhotometry><Symm>Symm_Bi_90</Symm>";
+        read(file(&points(&list), "").replace("</AbsolutePhotometry>", stated).as_bytes())
+    };
+    let want = symmetric(&[(90.0, 4.0), (120.0, 3.0), (180.0, 1.0), (240.0, 6.0), (270.0, 7.0)]).unwrap();
+    assert_eq!(want.planes, [0.0, 60.0, 90.0, 120.0, 180.0, 240.0, 270.0, 300.0]);
+    let before = [(270.0, 7.0), (300.0, 6.0), (0.0, 1.0), (60.0, 3.0), (90.0, 4.0)];
+    assert_eq!(symmetric(&before).unwrap(), want);
+    // The plane at 0 may be written as 360, or as both.
+    let at_360 = before.map(|(c, v)| (if c == 0.0 { 360.0 } else { c }, v));
+    assert_eq!(symmetric(&at_360).unwrap(), want);
+    assert_eq!(symmetric(&[&before[..], &[(360.0, 1.0)]].concat()).unwrap(), want);
+    for (c, intensity) in [(0.0, 1.0), (180.0, 1.0), (150.0, 2.0), (225.0, 4.75), (315.0, 4.75)] {
+        assert!((want.intensity(c, 90.0) - intensity).abs() < 1e-12, "{c}");
+    }
+    // The whole circle stays as it is, and a half without its ends is refused.
+    let whole = symmetric(&[(0.0, 1.0), (90.0, 4.0), (180.0, 1.0), (270.0, 7.0)]).unwrap();
+    assert_eq!(whole.planes, [0.0, 90.0, 180.0, 270.0]);
+    let error = symmetric(&[(0.0, 1.0), (60.0, 3.0), (300.0, 6.0)]).unwrap_err();
+    assert!(
+        error.message.contains("the symmetry is Symm_Bi_90, but the horizontal angles go from 0 to 300"),
+        "{error}"
+    );
+}
+
+/// Photometry of other types than C is refused wherever the file states the type.
+#[test]
+fn only_photometry_of_type_c_is_read() {
+    let good = file(&points(&QUARTER), "");
+    let want = read(good.as_bytes()).unwrap();
+    let places = ["<Type>IES_C</Type>", "<LuminousData>", "<LuminousIntensity>"];
+    for kind in ["", "C", "CIE_C", "IES _ C", "Type C", "type_c"] {
+        assert_eq!(read(good.replace("IES_C", kind).as_bytes()).unwrap(), want, "{kind}");
+    }
+    for kind in ["A", "CIE_A", "CIE _ B", "IES_A", "IES_B", "TypeB", "CUSTOM"] {
+        for place in places {
+            let stated = format!("{place}<PhotometryType>{kind}</PhotometryType>");
+            let text = if place == places[0] { good.replace("IES_C", kind) } else { good.replace(place, &stated) };
+            let error = read(text.as_bytes()).unwrap_err();
+            let says = format!("the photometry has the type \"{kind}\"; only type C is read");
+            assert!(error.kind == ErrorKind::Unsupported && error.message.contains(&says), "{error}");
+        }
+    }
+    let other = "<LuminaireOpticalData><Emitter><IntensityDistribution><PhotometryType>B</PhotometryType>\
+                 <IntensityData horz=\"0\" vert=\"0\">50</IntensityData></IntensityDistribution></Emitter>\
+                 </LuminaireOpticalData>";
+    says(other, "line 1: the photometry has the type \"B\"");
+    assert!(read(other.replace(">B<", ">C<").as_bytes()).is_ok());
+}
+
 /// A distribution without symmetry that also shines upwards.
 fn uneven(size: [f64; 3], side_heights: Option<[f64; 4]>) -> Luminaire {
     Luminaire {
@@ -202,7 +284,10 @@ fn malformed_files_are_refused_with_the_line() {
         "2 vertical angles",
     );
     says(&good.replace("</AbsolutePhotometry>", "</AbsolutePhotometry><Symm>Symm_None</Symm>"), "from 0 to 90");
-    says(&good.replace("</AbsolutePhotometry>", "</AbsolutePhotometry><Symm>Symm_Odd</Symm>"), "does not define");
+    says(
+        &good.replace("</AbsolutePhotometry>", "</AbsolutePhotometry><Symm>Symm_Odd</Symm>"),
+        "Symm_Odd\"; Symm_None, Symm_Arbitrary, Symm_Bi_0, Symm_Bi_90, Symm_Quad and Symm_Full are read",
+    );
     says(&good.replace("h=\"90\"", "h=\"80\""), "from 0 to 80");
     says(&file("", ""), "0 intensities");
     says(&good.replace("LuminousData", "PhotonData"), "no luminous intensities");

@@ -83,7 +83,9 @@ class Product:
         except Error as error:
             raise ValueError(f"the photometry of {file.name!r} cannot be used for a design: {error}") from error
         product = cls.from_bytes(context, found, "ldt", name, watts, rendering)
-        return replace(product, reference=file.name + os.fspath(path)[len(os.fspath(file)) :])
+        text = os.fspath(path)
+        mark = text.lower().find(".gldf#")
+        return replace(product, reference=file.name + (text[mark + len(".gldf") :] if mark >= 0 else ""))
 
     @classmethod
     def from_bytes(
