@@ -245,7 +245,10 @@ mod tests {
         says(&QUARTER.replace("3 3 1 1", "3 900000000 1 1"), "line 6: the number of horizontal angles");
         says(&QUARTER.replace("3 3 1 1", "3 3 2 1"), "type B");
         says(&QUARTER.replace("0 45 90\n0 45 90", "0 90 45\n0 45 90"), "vertical angles must ascend");
-        says(&QUARTER.replace("0 45 90\n0 45 90", "0 45 90\n0 45 80"), "0 to 80");
+        says(
+            &QUARTER.replace("0 45 90\n0 45 90", "0 45 90\n0 45 80"),
+            "from 0 to 80; they must go from 0 to 0, 90, 180, or an angle above 180 up to 360",
+        );
         says(&QUARTER.replace("100 80 0", "100 -80 0"), "an intensity is");
         says(&QUARTER.replace("100 80 0", "100 NaN 0"), "an intensity is");
         assert!(read(&[0xff, 0x00, 0x12]).is_err());

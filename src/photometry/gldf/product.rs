@@ -43,11 +43,10 @@ fn product(container: &Container, root: Element, variant: Option<&str>) -> Resul
     }
     let emitters = parts.len();
     let mut luminaire = sum(parts)?;
-    // The name of a variant overrules that of the product.
-    luminaire.name = match name_of(chosen) {
-        "" => locale(product.find("ProductMetaData/Name")).into(),
-        name => name.into(),
-    };
+    // The name of a variant overrules that of the product; "---" is no name.
+    let of_variant = name_of(chosen);
+    let has_name = of_variant.contains(char::is_alphanumeric);
+    luminaire.name = if has_name { of_variant } else { locale(product.find("ProductMetaData/Name")) }.into();
     luminaire.manufacturer = root.find("Header/Manufacturer").map(Element::line_of_text).unwrap_or_default();
     luminaire.check()?;
     Ok(File { luminaire, variants: all.len(), emitters })

@@ -155,9 +155,11 @@ fn variants_are_chosen_and_their_emitters_added_up() {
     assert!((four.flux() / 300.0 - 1.0).abs() < 1e-3 && four.watts == 33.0, "{}", four.flux());
     assert_eq!((four.temperature, four.rendering), (3000.0, 90.0));
     // A variant without a name has that of the product.
-    let unnamed =
-        product("", "<Variant id=\"v-6\"><Geometry><EmitterReference emitterId=\"same\"/></Geometry></Variant>");
-    assert_eq!(read(&container(&unnamed), Some("v-6")).unwrap().luminaire.name, "Product");
+    for name in ["", "<Name/>", "<Name><Locale language=\"en\">---</Locale></Name>"] {
+        let geometry = "<Geometry><EmitterReference emitterId=\"same\"/></Geometry>";
+        let unnamed = product("", &format!("<Variant id=\"v-6\">{name}{geometry}</Variant>"));
+        assert_eq!(read(&container(&unnamed), Some("v-6")).unwrap().luminaire.name, "Product");
+    }
     let error = read(&bytes, Some("Dark")).unwrap_err();
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains("normal operation"), "{error}");
     let error = read(&bytes, Some("Six")).unwrap_err();

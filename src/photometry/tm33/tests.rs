@@ -129,6 +129,7 @@ fn emission_areas_of_all_emitters_make_the_opening() {
     let round = areas("Bottom", 0.3, 0.0, "<Circular>true</Circular>");
     assert_eq!(with(&round, &round).size, [-0.3, -0.3, 0.0]);
     assert_eq!(with(&round, &areas("Bottom", 0.3, 0.0, "")).size, [0.3, 0.3, 0.0]);
+    assert_eq!(with(&areas("Bottom", 0.3, 0.0, " "), &round).size, [0.3, 0.3, 0.0]);
     assert_eq!(with(&left, "<!-- none -->").size, [0.3, 0.8, 0.0]);
 }
 
