@@ -61,7 +61,7 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
     let relative = exposures::chain(&order, &ratios, reference);
     if let Some(k) = relative.iter().position(|ratio| !(ratio.log.abs() <= MAX_LOG_RATIO)) {
         return Err(Error::argument(format!(
-            "the exposure of photos[{k}] is {:e} times that of the reference; it must lie in [1e-18, 1e18]",
+            "the exposure of photos[{k}] is {:.2e} times that of the reference; it must lie in [1e-18, 1e18]",
             relative[k].log.exp()
         )));
     }

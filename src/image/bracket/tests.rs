@@ -319,7 +319,7 @@ fn exposures_that_f32_cannot_divide_by_are_refused() {
     let photos: Vec<&Image> = photos.iter().collect();
     let params = Params { source: Source::Metadata, reference: Some(1), ..Params::default() };
     let error = run(&photos, &metadata, &params).unwrap_err();
-    assert!(error.message.contains("1e20") && error.message.contains("[1e-18, 1e18]"), "{error}");
+    assert!(error.message.contains("1.00e20") && error.message.contains("[1e-18, 1e18]"), "{error}");
 }
 
 #[test]
