@@ -20,7 +20,6 @@ use crate::geometry::FocalSource;
 use crate::image::Image;
 use crate::rectify::{self, LineDetector, Metric, Search, UnwarpParams, Unwarped, View};
 use glam::DVec2;
-use std::mem::offset_of;
 use std::sync::Arc;
 
 /// Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create.
@@ -116,7 +115,7 @@ pub struct luxfer_rectify_params {
     pub distortion: f64,
 }
 
-versioned!(luxfer_rectify_params, [80, 88], {
+versioned!(luxfer_rectify_params, [88], {
     let (view, unwarp) = (rectify::Params::default(), UnwarpParams::default());
     Self {
         struct_size: 88,
@@ -170,18 +169,11 @@ impl luxfer_rectify_params {
             focal: (self.focal != 0.0).then_some(self.focal),
             expected_focal: None,
             principal: (!x.is_nan() || !y.is_nan()).then_some(DVec2::new(x, y)),
-            distortion: self.distortion(),
+            distortion: (!self.distortion.is_nan()).then_some(self.distortion),
             seed: self.seed,
         };
         let unwarp = UnwarpParams { axes, max_side: self.max_side as usize, max_magnification: self.max_magnification };
         Ok((view, unwarp))
-    }
-
-    /// The distortion to undo; `None`: the measured one. A program whose header lacks the field applies `to_photo` to
-    /// the photo itself, so nothing is undone for it.
-    fn distortion(&self) -> Option<f64> {
-        let has_field = self.struct_size as usize > offset_of!(luxfer_rectify_params, distortion);
-        if has_field { (!self.distortion.is_nan()).then_some(self.distortion) } else { Some(0.0) }
     }
 }
 
