@@ -58,7 +58,8 @@ class Rectify(StageBase):
         return self._get_image("get_image", _params.member(RectifyImage, which))
 
     def undistort(self, image: ImageLike) -> Image:
-        """An image of the photo's size as a lens without distortion would show it: a copy if no distortion was undone."""
+        """An image of the photo's size as a lens without distortion would show it; a copy if no distortion was
+        undone."""
         return self._get_image("undistort", image_of(self._context, image))
 
     @property
