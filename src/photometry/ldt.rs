@@ -14,7 +14,7 @@ const MAX_SETS: usize = 20;
 const ROOM_INDICES: usize = 10;
 
 /// Width in millimetres of an upright rectangle along C = 90: sizes in a file are often whole numbers. [convention]
-const LEAST_WIDTH: f64 = 1.0;
+const MIN_WIDTH: f64 = 1.0;
 
 struct Rows<'a, I> {
     lines: I,
@@ -233,7 +233,7 @@ fn opening(l: &Luminaire) -> [f64; 3] {
     }
     // Tubes that lie are written as the boxes around them, and upright rectangles with a width.
     let [width, length, height] = l.bounds().map(|m| m * 1e3);
-    [length, if length > 0.0 { width.max(LEAST_WIDTH) } else { width }, height]
+    [length, if length > 0.0 { width.max(MIN_WIDTH) } else { width }, height]
 }
 
 /// Writes a luminaire as a EULUMDAT file: with rotational symmetry if it has a single plane, otherwise without

@@ -42,7 +42,7 @@ const WELL_EXPOSED: [f32; 2] = [0.02, 0.8];
 /// [rounding]
 const MAX_LOG_RATIO: f64 = 18.0 * std::f64::consts::LN_10 + 1e-9;
 
-/// Merges photos of one view. `metadata` are those of the photos.
+/// Merges photos of one view. `metadata[k]` belongs to `photos[k]`.
 pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job: Job) -> Result<(Image, Report)> {
     check(photos, params, job)?;
     let [first, ..] = photos else { return Err(Error::argument("count is 0")) };

@@ -77,8 +77,8 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    /// The difference of the exposures at a pixel, how far it may differ, and the variance of its noise; zeros if it
-    /// cannot be told.
+    /// The difference of the exposures at a pixel, how far it may differ, and the variance of its noise; zeros if
+    /// the photos do not show it.
     fn difference(&self, x: usize, y: usize) -> [f32; 3] {
         let (Some([s, s_peak]), Some([l, l_peak])) = (self.short.levels(x, y), self.long.levels(x, y)) else {
             return [0.0; 3];

@@ -1,6 +1,6 @@
 //! How far two exposures of one pixel may differ: measured on the photos themselves, at each level of light.
 
-use super::ratio::Sample;
+use super::ratio::{MAD_TO_SIGMA, Sample};
 use crate::error::Result;
 use crate::image::try_push;
 
@@ -20,9 +20,6 @@ const MAX_DEVIATION: f32 = 0.2;
 const MAX_SCATTER: f32 = 0.1;
 const MAX_PHOTON_NOISE: f32 = 1.0 / 500.0;
 
-/// Standard deviation of normal noise over its median absolute deviation. [convention]
-const MAD_TO_SIGMA: f32 = 1.4826;
-
 /// The difference `long - ratio * short` of unmoved pixels, by level: its median and its robust standard deviation,
 /// relative to the light.
 pub struct Noise([[f32; 2]; LEVELS]);
@@ -39,7 +36,7 @@ impl Noise {
             *out = (values.len() >= MIN_PIXELS).then(|| {
                 let middle = median(values);
                 values.iter_mut().for_each(|v| *v = (*v - middle).abs());
-                let scatter = MAD_TO_SIGMA * median(values);
+                let scatter = MAD_TO_SIGMA as f32 * median(values);
                 [middle.clamp(-MAX_DEVIATION, MAX_DEVIATION), scatter]
             });
         }

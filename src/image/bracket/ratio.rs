@@ -32,8 +32,8 @@ const WELL_EXPOSED: [f64; 2] = [0.002, 0.8];
 /// Tukey's constant, in standard deviations: 95 % efficiency for normal noise. [paper §4 of Beaton and Tukey 1974]
 const TUKEY: f64 = 4.685;
 
-/// Standard deviation of normal noise over its median absolute deviation. [convention]
-const MAD_TO_SIGMA: f64 = 1.4826;
+/// Standard deviation of normal noise over its median absolute deviation. \[convention\]
+pub const MAD_TO_SIGMA: f64 = 1.4826;
 
 /// Smallest scatter, relative to the square root of the values, so that equal photos have weights. [rounding]
 const MIN_SCATTER: f64 = 1e-6;
