@@ -31,11 +31,62 @@ fn lamp(flux: f64) -> Luminaire {
     Luminaire { watts: 20.0, ..Luminaire::lambertian("lamp", flux, [0.6, 1.2, 0.0]) }
 }
 
+fn name(text: &str) -> String {
+    format!("<Name><Locale language=\"de\">{text}-de</Locale><Locale language=\"en\">{text}</Locale></Name>")
+}
+
+/// All kinds of emitters.
+fn emitters(extra: &str) -> String {
+    let fixed = |id: &str, photometry: &str, flux: u32, behaviour: &str| {
+        format!(
+            "<Emitter id=\"{id}\"><FixedLightEmitter{behaviour}><PhotometryReference photometryId=\"{photometry}\"/>\
+             <LightSourceReference fixedLightSourceId=\"led\"/><RatedLuminousFlux>{flux}</RatedLuminousFlux>\
+             </FixedLightEmitter></Emitter>"
+        )
+    };
+    let parts: [&str; 6] = [
+        &fixed("same", "pl", 1000, ""),
+        &fixed("double", "pi", 2000, " emergencyBehaviour=\"Combined\""),
+        &fixed("emergency", "pl", 50, " emergencyBehaviour=\"EmergencyOnly\""),
+        "<Emitter id=\"changeable\"><ChangeableLightEmitter><PhotometryReference photometryId=\"pt\"/><EquipmentReference \
+         equipmentId=\"eq\"/></ChangeableLightEmitter></Emitter>",
+        "<Emitter id=\"channels\"><MultiChannelLightEmitter><LightSourceReference multiChannelLightSourceId=\"multi\"/>\
+         </MultiChannelLightEmitter></Emitter><Emitter id=\"sensor\"><SensorEmitter><SensorReference sensorId=\"s\"/>\
+         </SensorEmitter></Emitter>",
+        extra,
+    ];
+    parts.concat()
+}
+
+/// Variants of the product, each with some of the emitters.
+fn variants(extra: &str) -> String {
+    let reference = |id: &&str| {
+        format!(
+            "<EmitterReference emitterId=\"{id}\"><EmitterObjectExternalName>x</EmitterObjectExternalName>\
+             </EmitterReference>"
+        )
+    };
+    let variant = |id: &str, text: &str, emitters: &[&str]| {
+        let list: String = emitters.iter().map(reference).collect();
+        format!(
+            "<Variant id=\"{id}\">{}<Geometry><ModelGeometryReference geometryId=\"g\">{list}</ModelGeometryReference>\
+             </Geometry></Variant>",
+            name(text)
+        )
+    };
+    let parts: [&str; 6] = [
+        &variant("v-1", "One", &["same"]),
+        &variant("v-2", "Two", &["same", "double", "emergency", "sensor"]),
+        &variant("v-3", "Changeable", &["changeable"]),
+        &variant("v-4", "Channels", &["channels"]),
+        &variant("v-5", "Dark", &["emergency"]),
+        extra,
+    ];
+    parts.concat()
+}
+
 /// A product with three kinds of photometry, all kinds of emitters, and variants that use them.
 fn product(extra_emitter: &str, extra_variant: &str) -> String {
-    let name = |text: &str| {
-        format!("<Name><Locale language=\"de\">{text}-de</Locale><Locale language=\"en\">{text}</Locale></Name>")
-    };
     let file = |id: &str, kind: &str, name: &str| {
         format!("<File id=\"{id}\" contentType=\"ldc/{kind}\" type=\"localFileName\">{name}</File>")
     };
@@ -44,46 +95,10 @@ fn product(extra_emitter: &str, extra_variant: &str) -> String {
     };
     let source = "<ColorInformation><ColorRenderingIndex>90</ColorRenderingIndex><CorrelatedColorTemperature>3000\
                   </CorrelatedColorTemperature></ColorInformation>";
-    let fixed = |id: &str, photometry: &str, flux: u32, behaviour: &str| {
-        format!(
-            "<Emitter id=\"{id}\"><FixedLightEmitter{behaviour}><PhotometryReference photometryId=\"{photometry}\"/>\
-             <LightSourceReference fixedLightSourceId=\"led\"/><RatedLuminousFlux>{flux}</RatedLuminousFlux>\
-             </FixedLightEmitter></Emitter>"
-        )
-    };
-    let variant = |id: &str, text: &str, emitters: &[&str]| {
-        let list: String = emitters.iter().map(|id| format!("<EmitterReference emitterId=\"{id}\"><EmitterObjectExternalName>x</EmitterObjectExternalName></EmitterReference>")).collect();
-        format!(
-            "<Variant id=\"{id}\">{}<Geometry><ModelGeometryReference geometryId=\"g\">{list}</ModelGeometryReference></Geometry></Variant>",
-            name(text)
-        )
-    };
-    let emitters = [
-        fixed("same", "pl", 1000, ""),
-        fixed("double", "pi", 2000, " emergencyBehaviour=\"Combined\""),
-        fixed("emergency", "pl", 50, " emergencyBehaviour=\"EmergencyOnly\""),
-        "<Emitter id=\"changeable\"><ChangeableLightEmitter><PhotometryReference photometryId=\"pt\"/><EquipmentReference \
-         equipmentId=\"eq\"/></ChangeableLightEmitter></Emitter>"
-            .into(),
-        "<Emitter id=\"channels\"><MultiChannelLightEmitter><LightSourceReference multiChannelLightSourceId=\"multi\"/>\
-         </MultiChannelLightEmitter></Emitter><Emitter id=\"sensor\"><SensorEmitter><SensorReference sensorId=\"s\"/>\
-         </SensorEmitter></Emitter>"
-            .into(),
-        extra_emitter.into(),
-    ]
-    .concat();
-    let variants = [
-        variant("v-1", "One", &["same"]),
-        variant("v-2", "Two", &["same", "double", "emergency", "sensor"]),
-        variant("v-3", "Changeable", &["changeable"]),
-        variant("v-4", "Channels", &["channels"]),
-        variant("v-5", "Dark", &["emergency"]),
-        extra_variant.into(),
-    ]
-    .concat();
     let channel = |flux: u32| {
         format!(
-            "<Channel type=\"Red\"><PhotometryReference photometryId=\"pl\"/><RatedLuminousFlux>{flux}</RatedLuminousFlux></Channel>"
+            "<Channel type=\"Red\"><PhotometryReference photometryId=\"pl\"/><RatedLuminousFlux>{flux}\
+             </RatedLuminousFlux></Channel>"
         )
     };
     [
@@ -102,11 +117,11 @@ fn product(extra_emitter: &str, extra_variant: &str) -> String {
         "</Channels></MultiChannelLightSource></LightSources>\n<Equipments><Equipment id=\"eq\"><LightSourceReference \
          changeableLightSourceId=\"tube\" lightSourceCount=\"3\"/><RatedInputPower>32</RatedInputPower></Equipment>\
          </Equipments>\n<Emitters>",
-        &emitters,
+        &emitters(extra_emitter),
         "</Emitters></GeneralDefinitions>\n<ProductDefinitions><ProductMetaData>",
         &name("Product"),
         "</ProductMetaData><Variants>\n",
-        &variants,
+        &variants(extra_variant),
         "</Variants></ProductDefinitions>\n</Root>",
     ]
     .concat()
