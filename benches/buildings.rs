@@ -15,6 +15,7 @@ use luxfer::exec::Pool;
 use luxfer::job::Monitor;
 use luxfer::render::{self, Film, Params, World};
 use luxfer::scene::{Camera, Environment, Material, Mesh, PunctualLight, Scene};
+use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
 /// Error of the image at which times are compared.
@@ -259,7 +260,7 @@ fn furnished_rooms(count: usize) -> Scene {
         let (rows, columns) = (200, 250);
         let mut sphere = Mesh { material: WOOD, ..Mesh::default() };
         for (i, j) in (0..=rows).flat_map(|i| (0..=columns).map(move |j| (i, j))) {
-            let (polar, angle) = (i as f32 / rows as f32 * 3.1416, j as f32 / columns as f32 * 6.2832);
+            let (polar, angle) = (i as f32 / rows as f32 * PI, j as f32 / columns as f32 * TAU);
             let outwards = Vec3::new(polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin());
             sphere.positions.push(at + Vec3::new(1.2, 0.5, 2.0) + 0.5 * outwards);
         }

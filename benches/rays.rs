@@ -249,7 +249,7 @@ fn measure_tracing(
     any: bool,
     table: &mut Table,
 ) {
-    let mut ours = || our_hits(accel, rays, any);
+    let ours = || our_hits(accel, rays, any);
     let speed = |seconds: f64| format!("{:.2}", rays.len() as f64 / seconds * 1e-6);
     let name = format!("rays.{kind}.{scene}.vs_embree");
     match peers {
@@ -280,7 +280,7 @@ fn measure_tracing(
             }
         }
         Err(reason) => {
-            let (seconds, _) = time(Clock::Thread, &mut ours);
+            let (seconds, _) = time(Clock::Thread, ours);
             table.row([scene, kind, &speed(seconds), "-", "-", "-", "-"]);
             if is_headline(kind, scene) {
                 absent(&name, reason);

@@ -17,13 +17,13 @@ fn main() {
     let matt = scenes::planes("planes8k", 8_000);
     for setting in [Ok(matt), scenes::cornell(), scenes::demo_room(), scenes::demo_office(), scenes::kitchen()] {
         match setting {
-            Ok(setting) => measure(setting),
+            Ok(setting) => measure(&setting),
             Err(reason) => println!("# {reason}"),
         }
     }
 }
 
-fn measure(setting: Setting) {
+fn measure(setting: &Setting) {
     let monitor = Monitor::default();
     // This pool only builds; rendering runs in a pool of one thread.
     let builder = Pool::new(0).expect("threads");

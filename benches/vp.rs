@@ -48,7 +48,7 @@ fn main() {
         pool.run(|| panoramas(&photos));
     }
     if wants("lenses") {
-        pool.run(|| lenses(&sets[1], &photos));
+        pool.run(|| lenses(sets[1].as_ref(), &photos));
     }
     if wants("curves") {
         pool.run(|| curves(&sets, &photos));
@@ -165,7 +165,7 @@ const YORK: [&str; 8] = ["yud_008", "yud_009", "yud_034", "yud_037", "yud_047", 
 
 /// Measures what undoing the distortion of the lens changes: on photos of York Urban, whose camera has barrel
 /// distortion, and on views cut out of panoramas, which have none.
-fn lenses(york: &Option<GivenSet>, panoramas: &[Labelled]) {
+fn lenses(york: Option<&GivenSet>, panoramas: &[Labelled]) {
     let Some(set) = york else { return absent("vp.york.focal_error", "York Urban is not there") };
     undone_segments(set);
     let mut cases: Vec<LensCase> =

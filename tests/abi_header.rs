@@ -349,7 +349,7 @@ fn generate() -> Vec<(String, String)> {
     let includes: String = PARTS.iter().map(|p| format!("#include \"luxfer/{}.h\"\n", p.name)).collect();
     let settings = settings(&section(&config, "init"));
     // Name the structs of settings: cbindgen leaves out structs that no function of their own file takes.
-    config.export.include = settings.clone();
+    config.export.include.clone_from(&settings);
     let mut files = vec![("luxfer.h".to_string(), guarded(umbrella.trim_start(), "LUXFER_H", &includes))];
     let sections = |part: &Part| {
         part.groups.iter().map(|g| with_initialisers(&section(&config, g), &settings)).collect::<String>()

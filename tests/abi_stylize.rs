@@ -334,7 +334,7 @@ fn extreme(from: (u32, u32), size: (u32, u32), channels: u32, weight: f32, broke
     let stylize = made(|out| unsafe { luxfer_stylize_create(context, out) });
     let art = artwork(context, from.0, from.1);
     let value = |x: u32, y: u32, c: u32| match broken {
-        Some(value) if (x + y) % 7 == 0 => value,
+        Some(value) if (x + y).is_multiple_of(7) => value,
         _ => ((x * 3 + y * 5 + c) % 17) as f32 / 16.0,
     };
     unsafe {

@@ -13,6 +13,8 @@ use luxfer::job::Monitor;
 use luxfer::pendant::{self, Input, Known, Params, Pendants, Placing};
 use luxfer::rng::Rng;
 use luxfer::scene::Scene;
+use std::f64::consts::PI;
+use std::slice::from_ref;
 
 fn body(name: &str) -> &'static Body {
     BODIES.iter().find(|b| b.name == name).unwrap()
@@ -104,7 +106,7 @@ fn intervals_hold_the_truth() {
         let case = Case::new(body, number, 11, 0.4);
         let Some(hook) = case.suspension else { continue };
         let params = Params { distance: case.ceiling, ..Params::default() };
-        let found = fit(&case.shot, &[case.outline.clone()], &[hook], Known::NoLength, params).unwrap().remove(0);
+        let found = fit(&case.shot, from_ref(&case.outline), &[hook], Known::NoLength, params).unwrap().remove(0);
         let drop = found.lamps[0].drop;
         right += usize::from(found.kind == body.kind);
         held += usize::from(drop.low < case.drop(body) && case.drop(body) < drop.high);
@@ -238,7 +240,7 @@ fn a_mask_gives_the_body_and_its_radiance() {
 fn meshes_are_closed_and_stand_in_the_scene() {
     let shot = Shot::new(0.0, 0.0, 35.0);
     let centre = 3.0 * shot.ray(DVec2::new(800.0, 400.0)).normalize();
-    for (name, volume) in [("globe", 0.5236), ("drum", 0.5498), ("bowl", 0.2618)] {
+    for (name, volume) in [("globe", PI / 6.0), ("drum", 0.175 * PI), ("bowl", PI / 12.0)] {
         let outline = shot.outline(body(name), centre, 240, 0.0, &mut Rng::new(1, &[]));
         let found = &fit(&shot, &[outline], &[], Known::Diameter(0.4), Params::default()).unwrap()[0];
         let mesh = found.body().mesh();
@@ -304,7 +306,7 @@ fn bad_input_is_refused_with_advice() {
     for (known, params) in wrong {
         assert_eq!(refused(known, params, &star).kind, ErrorKind::InvalidArgument);
     }
-    let two = fit(&shot, &[star.clone()], &[star[0], star[50]], Known::NoLength, Params::default()).map(|_| ());
+    let two = fit(&shot, from_ref(&star), &[star[0], star[50]], Known::NoLength, Params::default()).map(|_| ());
     assert!(two.unwrap_err().message.contains("suspensions 0 and 1 are both nearest to lamp 0"));
     assert_eq!(refused(Known::NoLength, Params::default(), &[DVec2::NAN; 30]).kind, ErrorKind::InvalidArgument);
     assert_eq!(refused(Known::NoLength, Params::default(), &star[..5]).kind, ErrorKind::InvalidArgument);

@@ -44,7 +44,7 @@ fn building(seed: u64) -> (Scene, f32) {
     let mut ceiling = block(Vec3::new(0.0, h, 0.0), Vec3::new(w, h + thick, d));
     ceiling.name = "Ceiling".into();
     join(&mut ceiling, &block(Vec3::new(0.3 * w, h - beam, 0.0), Vec3::new(0.3 * w + beam, h, d)));
-    if seed % 4 == 0 {
+    if seed.is_multiple_of(4) {
         let side = (w * d / between(0.02, 0.5)).sqrt();
         let corner = Vec3::new(-50.0, -side, -3.0);
         join(&mut ceiling, &Mesh::parallelogram(corner, Vec3::X * side, Vec3::Y * side, 0));

@@ -33,5 +33,5 @@ impl Clock {
 pub fn time<T>(clock: Clock, work: impl FnOnce() -> T) -> (f64, T) {
     let start = clock.now();
     let value = work();
-    ((clock.now() - start).as_secs_f64(), value)
+    (clock.now().saturating_sub(start).as_secs_f64(), value)
 }

@@ -190,6 +190,8 @@ impl Drop for Scene<'_> {
     }
 }
 
+// The fields of `Functions` state the types of the functions.
+#[allow(clippy::missing_transmute_annotations)]
 fn load() -> Result<Functions, String> {
     const NAMES: [&CStr; 2] = [c"libembree3.so.3", c"libembree3.so"];
     // SAFETY: names are terminated; the library stays open to the end of the process.

@@ -45,8 +45,9 @@ pub fn real(name: &str, reduce: usize) -> Result<Photo, Absent> {
 /// Divides the strokes of a text by a factor; all numbers of its lines are lengths in pixels.
 fn reduced(text: &str, reduce: usize) -> String {
     let word = |word: &str| word.parse::<f64>().map_or(word.to_string(), |n| (n / reduce as f64).to_string());
-    let line = |line: &str| match line.split_once('#').map_or(line, |(line, _)| line) {
-        line => line.split_whitespace().map(word).collect::<Vec<_>>().join(" "),
+    let line = |line: &str| {
+        let before_comment = line.split_once('#').map_or(line, |(before, _)| before);
+        before_comment.split_whitespace().map(word).collect::<Vec<_>>().join(" ")
     };
     text.lines().map(line).collect::<Vec<_>>().join("\n")
 }

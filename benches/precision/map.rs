@@ -31,8 +31,8 @@ pub fn measure(study: &mut Study) {
         "pixels, the largest",
         1,
         &mut [
-            Way { name: "f32", bytes: 8, error, work: &mut timed(|| map::<f32>()) },
-            Way { name: "f64", bytes: 16, error: 0.0, work: &mut timed(|| map::<f64>()) },
+            Way { name: "f32", bytes: 8, error, work: &mut timed(map::<f32>) },
+            Way { name: "f64", bytes: 16, error: 0.0, work: &mut timed(map::<f64>) },
         ],
     );
 }

@@ -259,7 +259,7 @@ fn planes_are_exact_beside_holes_and_on_narrow_images() {
 
 #[test]
 fn saturated_and_grey_photos_have_their_lab() {
-    for (channels, value, lab) in [(3, 1.0, [100.0, 0.0, 0.0]), (1, 0.18, [49.496_108, 0.0, 0.0]), (4, 0.0, [0.0; 3])] {
+    for (channels, value, lab) in [(3, 1.0, [100.0, 0.0, 0.0]), (1, 0.18, [49.496_11, 0.0, 0.0]), (4, 0.0, [0.0; 3])] {
         let mut photo = Image::new(70, 3, channels).unwrap();
         photo.data.fill(value);
         // A fourth channel, such as alpha, is ignored.

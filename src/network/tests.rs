@@ -173,7 +173,7 @@ fn element_wise_operators_broadcast_as_in_numpy() {
     }
 }
 
-fn expect(got: Tensor, shape: &[usize], values: &[f32]) {
+fn expect(got: &Tensor, shape: &[usize], values: &[f32]) {
     assert_eq!((got.shape.as_slice(), got.as_floats().unwrap()), (shape, values));
 }
 
@@ -181,9 +181,9 @@ fn expect(got: Tensor, shape: &[usize], values: &[f32]) {
 fn items_are_rearranged_broadcast_padded_and_reduced() {
     let x = Tensor::floats(vec![2, 3], vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
     let ints = |values: &[i64]| Tensor::integers(vec![values.len()], values.to_vec());
-    expect(node("Transpose", &x, &[], &[]), &[3, 2], &[0.0, 3.0, 1.0, 4.0, 2.0, 5.0]);
+    expect(&node("Transpose", &x, &[], &[]), &[3, 2], &[0.0, 3.0, 1.0, 4.0, 2.0, 5.0]);
     expect(
-        node(
+        &node(
             "Slice",
             &x,
             &[("s", &ints(&[-1, 0])), ("e", &ints(&[-9, 9])), ("a", &ints(&[1, 0])), ("t", &ints(&[-2, 1]))],
@@ -192,32 +192,36 @@ fn items_are_rearranged_broadcast_padded_and_reduced() {
         &[2, 2],
         &[2.0, 0.0, 5.0, 3.0],
     );
-    expect(node("Gather", &x, &[("i", &ints(&[-1, 0]))], &[I("axis", 1)]), &[2, 2], &[2.0, 0.0, 5.0, 3.0]);
-    expect(node("Expand", &x, &[("s", &ints(&[2, 1, 3]))], &[]), &[2, 2, 3], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0].repeat(2));
+    expect(&node("Gather", &x, &[("i", &ints(&[-1, 0]))], &[I("axis", 1)]), &[2, 2], &[2.0, 0.0, 5.0, 3.0]);
     expect(
-        node("Tile", &x, &[("r", &ints(&[1, 2]))], &[]),
+        &node("Expand", &x, &[("s", &ints(&[2, 1, 3]))], &[]),
+        &[2, 2, 3],
+        &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0].repeat(2),
+    );
+    expect(
+        &node("Tile", &x, &[("r", &ints(&[1, 2]))], &[]),
         &[2, 6],
         &[0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 3.0, 4.0, 5.0],
     );
     let pads = ints(&[0, 2, 0, 1]);
     expect(
-        node("Pad", &x, &[("p", &pads)], &[S("mode", "reflect")]),
+        &node("Pad", &x, &[("p", &pads)], &[S("mode", "reflect")]),
         &[2, 6],
         &[2.0, 1.0, 0.0, 1.0, 2.0, 1.0, 5.0, 4.0, 3.0, 4.0, 5.0, 4.0],
     );
     expect(
-        node("Pad", &x, &[("p", &pads)], &[S("mode", "edge")]),
+        &node("Pad", &x, &[("p", &pads)], &[S("mode", "edge")]),
         &[2, 6],
         &[0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 3.0, 3.0, 3.0, 4.0, 5.0, 5.0],
     );
     expect(
-        node("Concat", &x, &[("w", &x)], &[I("axis", 1)]),
+        &node("Concat", &x, &[("w", &x)], &[I("axis", 1)]),
         &[2, 6],
         &[0.0, 1.0, 2.0, 0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 3.0, 4.0, 5.0],
     );
-    expect(node("Reshape", &x, &[("s", &ints(&[0, -1, 1]))], &[]), &[2, 3, 1], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
-    expect(node("ReduceMean", &x, &[], &[Is("axes", &[0]), I("keepdims", 0)]), &[3], &[1.5, 2.5, 3.5]);
-    expect(node("ReduceMax", &x, &[], &[Is("axes", &[-1])]), &[2, 1], &[2.0, 5.0]);
+    expect(&node("Reshape", &x, &[("s", &ints(&[0, -1, 1]))], &[]), &[2, 3, 1], &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+    expect(&node("ReduceMean", &x, &[], &[Is("axes", &[0]), I("keepdims", 0)]), &[3], &[1.5, 2.5, 3.5]);
+    expect(&node("ReduceMax", &x, &[], &[Is("axes", &[-1])]), &[2, 1], &[2.0, 5.0]);
 }
 
 #[test]
@@ -225,7 +229,7 @@ fn images_are_rearranged_resized_and_pooled() {
     let ints = |values: &[i64]| Tensor::integers(vec![values.len()], values.to_vec());
     let depth = Tensor::floats(vec![1, 4, 1, 2], (0..8).map(|v| v as f32).collect());
     expect(
-        node("DepthToSpace", &depth, &[], &[I("blocksize", 2)]),
+        &node("DepthToSpace", &depth, &[], &[I("blocksize", 2)]),
         &[1, 1, 2, 4],
         &[0.0, 2.0, 1.0, 3.0, 4.0, 6.0, 5.0, 7.0],
     );
@@ -233,7 +237,7 @@ fn images_are_rearranged_resized_and_pooled() {
     let none = Tensor::floats(vec![0], vec![]);
     let sizes = ints(&[1, 1, 3, 3]);
     expect(
-        node(
+        &node(
             "Resize",
             &image,
             &[("r", &none), ("s", &none), ("t", &sizes)],
@@ -243,12 +247,12 @@ fn images_are_rearranged_resized_and_pooled() {
         &[0.0, 0.5, 1.0, 1.0, 1.5, 2.0, 2.0, 2.5, 3.0],
     );
     expect(
-        node("MaxPool", &image, &[], &[Is("kernel_shape", &[2, 2]), Is("pads", &[1, 1, 0, 0])]),
+        &node("MaxPool", &image, &[], &[Is("kernel_shape", &[2, 2]), Is("pads", &[1, 1, 0, 0])]),
         &[1, 1, 2, 2],
         &[0.0, 1.0, 2.0, 3.0],
     );
-    expect(node("AveragePool", &image, &[], &[Is("kernel_shape", &[2, 2])]), &[1, 1, 1, 1], &[1.5]);
-    expect(node("GlobalAveragePool", &image, &[], &[]), &[1, 1, 1, 1], &[1.5]);
+    expect(&node("AveragePool", &image, &[], &[Is("kernel_shape", &[2, 2])]), &[1, 1, 1, 1], &[1.5]);
+    expect(&node("GlobalAveragePool", &image, &[], &[]), &[1, 1, 1, 1], &[1.5]);
 }
 
 /// A small network: a convolution whose result is resized to the size of the input. The nodes Shape, Slice and Concat
@@ -302,7 +306,7 @@ fn damaged_files_are_errors() {
     let mut rng = Rng::new(3, &[]);
     for _ in 0..4000 {
         let mut damaged = file.clone();
-        for _ in 0..1 + rng.next_u32() % 4 {
+        for _ in 0..=rng.next_u32() % 4 {
             let at = rng.next_u32() as usize % damaged.len();
             damaged[at] = rng.next_u32() as u8;
         }

@@ -465,7 +465,7 @@ fn images_without_lines_are_refused_and_never_crash() {
         }
         // Test four images: noise, noise rounded to 0 or 1, white with a black corner, and noise in which every third
         // pixel is not finite.
-        let odd = |x: usize, y: usize| if (x + y) % 3 == 0 { f32::NAN } else { noise(x, y) };
+        let odd = |x: usize, y: usize| if (x + y).is_multiple_of(3) { f32::NAN } else { noise(x, y) };
         for image in [
             Image::from_fn(200, 150, |x, y| [noise(x, y); 3]).unwrap(),
             Image::from_fn(200, 150, |x, y| [noise(x, y).round(); 3]).unwrap(),

@@ -90,7 +90,7 @@ fn tokens(text: &str) -> Vec<String> {
 /// A line up to its comment, if the comment does not begin inside a string.
 fn without_comment(line: &str) -> &str {
     let starts = line.match_indices("//").map(|(at, _)| at);
-    let outside = |at: &usize| line[..*at].replace("\\\"", "").matches('"').count() % 2 == 0;
+    let outside = |at: &usize| line[..*at].replace("\\\"", "").matches('"').count().is_multiple_of(2);
     starts.into_iter().find(outside).map_or(line, |at| &line[..at])
 }
 

@@ -4,6 +4,7 @@ use crate::image::io::{Encoding, decode, decode_photo, encode_png};
 use crate::image::tiff::ifd::Order;
 use crate::image::tiff::ifd::tests::{Entry, structure, writers};
 use image::ImageEncoder;
+use std::slice::from_ref;
 
 const ASCII: u16 = 2;
 const SHORT: u16 = 3;
@@ -149,8 +150,8 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     let film = short(big, 0xa405, 26);
     let recorded = [short(big, 0xa002, 4032), short(big, 0xa003, 3024)];
     let by_film = 26.0 * 50.0 / FILM_DIAGONAL;
-    assert!(near(metadata(&[film.clone()]).focal, by_film));
-    assert!(near(metadata(&[&recorded[..], &[film.clone()]].concat()).focal, by_film));
+    assert!(near(metadata(from_ref(&film)).focal, by_film));
+    assert!(near(metadata(&[&recorded[..], from_ref(&film)].concat()).focal, by_film));
     // A sensor of 7 x 5.25 mm behind a lens of 4.3 mm: 576 pixels per millimetre, 4032 pixels in a row.
     let sensor = [
         rational(big, 0x920a, 43, 10),
@@ -163,7 +164,7 @@ fn the_focal_length_is_in_pixels_of_the_loaded_photo() {
     assert!(near(metadata(&all).focal, by_sensor), "{:?}", metadata(&all));
     // If the two estimates agree within 10 %, the estimate from the sensor is used, otherwise the 35 mm equivalent.
     assert!(near(metadata(&[&all[..], &[short(big, 0xa405, 21)]].concat()).focal, by_sensor));
-    assert!(near(metadata(&[&all[..], &[film.clone()]].concat()).focal, by_film));
+    assert!(near(metadata(&[&all[..], from_ref(&film)].concat()).focal, by_film));
     // The focal length is unknown if the photo is cropped to another aspect ratio, if the 35 mm equivalent is 0, or if
     // a denominator is 0.
     assert_eq!(metadata(&[short(big, 0xa002, 4032), short(big, 0xa003, 2268), film]).focal, None);

@@ -25,6 +25,11 @@ struct Picture {
     more: Vec<Entry>,
 }
 
+/// Returns the value of a sample, in [0, 1].
+fn value(x: usize, y: usize, s: usize) -> f64 {
+    ((x * 37 + y * 11 + s * 71) % 101) as f64 / 100.0
+}
+
 impl Picture {
     fn new(samples: usize, bits: u16, format: u16, photometric: u16) -> Self {
         Self {
@@ -40,11 +45,6 @@ impl Picture {
             tile: None,
             more: vec![],
         }
-    }
-
-    /// Returns the value of a sample, in [0, 1].
-    fn value(&self, x: usize, y: usize, s: usize) -> f64 {
-        ((x * 37 + y * 11 + s * 71) % 101) as f64 / 100.0
     }
 
     /// Returns the bytes of a sample as the file stores them.
@@ -78,7 +78,7 @@ impl Picture {
             let mut out: Vec<Vec<u8>> = vec![];
             for x in x0..x0 + width {
                 let inside = x < self.size[0] && y < self.size[1];
-                out.extend(samples.clone().map(|s| self.stored(if inside { self.value(x, y, s) } else { 0.0 })));
+                out.extend(samples.clone().map(|s| self.stored(if inside { value(x, y, s) } else { 0.0 })));
             }
             if self.depth.0 >= 8 {
                 return self.predict(&out, samples.len());
@@ -208,7 +208,7 @@ impl Picture {
 }
 
 fn sample(p: &Picture, x: usize, y: usize, s: usize) -> f32 {
-    p.kept(p.value(x, y, s))
+    p.kept(value(x, y, s))
 }
 
 #[test]

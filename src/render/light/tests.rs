@@ -360,7 +360,7 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
     // Place one triangle in each of 16 × 8 solid angles, so that none occludes another. Distances, sizes and powers
     // vary widely.
     let mut rng = Rng::new(51, &[]);
-    for (near, far) in [(1.0, 1.0), (0.5, 200.0)] {
+    for (near, far) in [(1.0f32, 1.0f32), (0.5, 200.0)] {
         let (mut meshes, mut materials, mut expected) = (Vec::new(), Vec::new(), 0.0);
         for i in 0..128 {
             let mut place = || {
@@ -369,7 +369,7 @@ fn many_triangles_light_as_their_closed_forms_add_up_to() {
                 Vec3::new(polar.sin() * angle.cos(), polar.cos(), polar.sin() * angle.sin())
             };
             let mut corners = [place(), place(), place()];
-            let distance = near * (far / near as f32).powf(rng.next_f32());
+            let distance = near * (far / near).powf(rng.next_f32());
             corners = corners.map(|c| c * distance * (0.9 + 0.2 * rng.next_f32()));
             let faces = (corners[1] - corners[0]).cross(corners[2] - corners[0]).dot(corners[0]) < 0.0;
             // Every third triangle is two-sided. The others light the floor only if they face it.

@@ -200,7 +200,7 @@ fn a_time_budget_is_kept_but_for_the_first_image() {
                     let params =
                         Params { width, height, samples: 1 << 20, time_budget_ms, target_error, ..Params::default() };
                     let film = render(&world, &viewer(), &params);
-                    (film, processor_time() - start)
+                    (film, processor_time().saturating_sub(start))
                 };
                 // Time the smallest possible render, which traces one path in only a few of the pixels and assembles
                 // an image from them.

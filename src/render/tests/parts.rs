@@ -204,7 +204,7 @@ fn damaged_files_are_errors_and_a_cancel_leaves_none() {
         if round % 3 == 0 {
             damaged.truncate(rng.below(bytes.len()));
         } else {
-            for _ in 0..1 + rng.below(4) {
+            for _ in 0..=rng.below(4) {
                 // In every third round, corrupt the first 2000 bytes alone, which hold the header.
                 let at = rng.below(if round % 3 == 1 { 2000 } else { bytes.len() });
                 damaged[at] = rng.next_u32() as u8;
@@ -216,7 +216,7 @@ fn damaged_files_are_errors_and_a_cancel_leaves_none() {
         if let Ok(file) = File::open(&path) {
             let _ = merged(&world, &params, &[file]);
         }
-        if let Err(error) = merged(&world, &params, &[file.clone()]) {
+        if let Err(error) = merged(&world, &params, std::slice::from_ref(&file)) {
             assert!(matches!(error.kind, ErrorKind::Format | ErrorKind::InvalidArgument), "{}", error.message);
         }
     }

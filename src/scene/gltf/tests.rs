@@ -400,7 +400,7 @@ fn broken_bytes_never_panic() {
     for round in 0..6000u64 {
         let mut rng = Rng::new(42, &[round]);
         let mut broken = glb.clone();
-        for _ in 0..1 + rng.below(4) {
+        for _ in 0..=rng.below(4) {
             // Corrupt the JSON, which holds the structure, in at least three of four cases. A digit becomes another
             // random digit: the JSON stays readable, but its numbers may contradict each other.
             let at = if rng.below(4) == 0 { rng.below(glb.len()) } else { 20 + rng.below(json_length) };

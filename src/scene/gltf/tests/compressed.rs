@@ -166,7 +166,7 @@ fn defects_of_draco_streams_are_errors() {
     for round in 0..3000u64 {
         let mut rng = Rng::new(7, &[round]);
         let mut broken = stream.clone();
-        for _ in 0..1 + rng.below(4) {
+        for _ in 0..=rng.below(4) {
             let at = rng.below(broken.len());
             broken[at] = rng.next_u32() as u8;
         }
