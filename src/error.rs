@@ -106,7 +106,7 @@ impl fmt::Display for Error {
 impl std::error::Error for Error {}
 
 /// Returns `value` if it lies in `[low, high]`, otherwise an error that calls it `name`. NaN gives an error.
-pub fn check_range<T: PartialOrd + fmt::Display>(name: &str, value: T, low: T, high: T) -> Result<T> {
+pub fn check_range<T: Copy + PartialOrd + fmt::Display>(name: &str, value: T, low: T, high: T) -> Result<T> {
     if value >= low && value <= high {
         Ok(value)
     } else {

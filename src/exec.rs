@@ -440,7 +440,7 @@ mod tests {
             [random(100_000), random(2), vec![7; count as usize], (0..count).collect(), unlike_its_sample]
         {
             let mut sorted = numbers.clone();
-            sorted.sort();
+            sorted.sort_unstable();
             Pool::new(2).unwrap().run(|| sort(&mut numbers, Monitor::default().job())).unwrap();
             assert!(numbers == sorted);
         }

@@ -24,6 +24,8 @@ use obvhs::bvh2::node::Bvh2Node;
 const FEW_CLUSTERS: usize = 32;
 /// A cluster chooses its partner among this many clusters before it and as many after it in the list.
 const SEARCH_RADIUS: usize = 8;
+/// Number of clusters within the search radius of a cluster, including the cluster itself.
+const WINDOW: usize = 2 * SEARCH_RADIUS + 1;
 /// A range of at most this many leaves is processed by one thread; a longer range is divided between threads.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
@@ -180,12 +182,12 @@ const SENTINEL: f32 = 1e15;
 
 /// The entry `[i / LANES][k][i % LANES]` holds the low bits ([`PARTNER_BITS`]) of `i XOR j`. Here
 /// `j = i - SEARCH_RADIUS + k` is the index of a neighbour of cluster `i`.
-static INDEX_DIFFERENCE: [[[u32; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES] = {
-    let mut table = [[[0; LANES]; 2 * SEARCH_RADIUS + 1]; 2 * FEW_CLUSTERS / LANES];
+static INDEX_DIFFERENCE: [[[u32; LANES]; WINDOW]; 2 * FEW_CLUSTERS / LANES] = {
+    let mut table = [[[0; LANES]; WINDOW]; 2 * FEW_CLUSTERS / LANES];
     let mut i = 0;
     while i < 2 * FEW_CLUSTERS {
         let mut k = 0;
-        while k <= 2 * SEARCH_RADIUS {
+        while k < WINDOW {
             table[i / LANES][k][i % LANES] = (i ^ (i + k).wrapping_sub(SEARCH_RADIUS)) as u32 & PARTNER_BITS;
             k += 1;
         }
@@ -245,7 +247,7 @@ impl Boxes {
         for (i, choices) in choices.chunks_exact_mut(LANES).enumerate().take(len.div_ceil(LANES)) {
             let own = rows(SEARCH_RADIUS + LANES * i);
             let mut best = L::splat(f32::MAX);
-            for k in (0..SEARCH_RADIUS).chain(SEARCH_RADIUS + 1..2 * SEARCH_RADIUS + 1) {
+            for k in (0..SEARCH_RADIUS).chain(SEARCH_RADIUS + 1..WINDOW) {
                 let other = rows(LANES * i + k);
                 let extent = |axis: usize| own[3 + axis].max(other[3 + axis]).sub(own[axis].min(other[axis]));
                 let [x, y, z] = [extent(0), extent(1), extent(2)];

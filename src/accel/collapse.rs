@@ -173,7 +173,7 @@ impl Choice<'_> {
                 && let Some(largest) = (0..open.len()).max_by(|&a, &b| open[a].area.total_cmp(&open[b].area))
             {
                 let next = open.swap_remove(largest);
-                self.make_node(next, root, leave, &mut wide, &mut open)?;
+                self.make_node(&next, root, leave, &mut wide, &mut open)?;
             }
             roots.append(&mut open);
         }
@@ -181,7 +181,7 @@ impl Choice<'_> {
     }
 
     /// Creates a node and the packets below it. Appends to `open` the child nodes that are still to be written.
-    fn make_node(&self, this: Open, root: Place, leave: bool, wide: &mut Wide, open: &mut Vec<Open>) -> Result<()> {
+    fn make_node(&self, this: &Open, root: Place, leave: bool, wide: &mut Wide, open: &mut Vec<Open>) -> Result<()> {
         let node = wide.lines.push(&Node::empty())?;
         wide.nodes.push(node);
         match this.parent {

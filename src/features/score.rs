@@ -158,7 +158,7 @@ impl Evidence {
         // The back wall's edge at a side wall is vertical; its edge at the ceiling or floor runs along the horizontal
         // axis of the back wall.
         let (edge_axis, across) = if side < 2 { (VERTICAL, 0) } else { (HORIZONTAL_A, 1) };
-        let sign = if side % 2 == 0 { -1.0 } else { 1.0 };
+        let sign = if side.is_multiple_of(2) { -1.0 } else { 1.0 };
         let mut values: Vec<(f64, f64)> = (self.segments.iter())
             .filter(|w| w.axis == edge_axis)
             .filter_map(|w| {

@@ -198,7 +198,7 @@ pub unsafe extern "C" fn luxfer_lamps_start(
         stage.start(job, move |inputs, _, job| {
             let world = object.world(&scene, job.part(0.0, 0.1))?;
             let material = material.map(|m| m as usize);
-            let lamps = params.lamps(&scene, material)?;
+            let lamps = lamps_of(&scene, material)?;
             let (group_of, groups) = params.groups(&lamps);
             let triangles = inputs.goals.iter().map(|aim| aim.triangles(&scene)).collect::<Result<Vec<_>>>()?;
             let goals: Vec<Goal> = inputs.goals.iter().zip(&triangles).map(|(aim, t)| aim.goal(t)).collect();
@@ -218,6 +218,14 @@ pub unsafe extern "C" fn luxfer_lamps_start(
     })
 }
 
+fn lamps_of(scene: &Scene, material: Option<usize>) -> Result<EmissionLamps> {
+    let Some(material) = material else { return EmissionLamps::of_lights(scene) };
+    match scene.materials[material].emission_texture {
+        Some(map) => EmissionLamps::of_texture(&scene.textures[map.texture].image),
+        None => EmissionLamps::of_meshes(scene, material),
+    }
+}
+
 impl luxfer_lamps_params {
     fn check(&self) -> Result<()> {
         if self.free_colour > 1 || self.reserved != 0 {
@@ -230,14 +238,6 @@ impl luxfer_lamps_params {
             return Err(Error::argument(format!("row_tolerance is {}; it must not be negative", self.row_tolerance)));
         }
         Ok(())
-    }
-
-    fn lamps(&self, scene: &Scene, material: Option<usize>) -> Result<EmissionLamps> {
-        let Some(material) = material else { return EmissionLamps::of_lights(scene) };
-        match scene.materials[material].emission_texture {
-            Some(map) => EmissionLamps::of_texture(&scene.textures[map.texture].image),
-            None => EmissionLamps::of_meshes(scene, material),
-        }
     }
 
     fn groups(&self, lamps: &EmissionLamps) -> (Vec<u32>, usize) {

@@ -398,7 +398,7 @@ pub unsafe extern "C" fn luxfer_transfer_use_rectify(
             results.view = Some(found.view.clone());
             (results.view_by_lines, results.view_is_given) = (None, true);
             if found.unwarped.is_some() {
-                results.unwarped = found.unwarped.clone();
+                results.unwarped.clone_from(&found.unwarped);
             }
         })
     })

@@ -29,12 +29,12 @@ impl Comparison {
             for (x, error) in (0..width).filter_map(|x| Some((x, error(x, y)?))) {
                 let is_wrong = error > tolerance;
                 let place = is_wrong.then_some([x, y]);
-                row.add(Worst { found: Self { compared: 1, wrong: usize::from(is_wrong), place }, largest: error });
+                row.add(&Worst { found: Self { compared: 1, wrong: usize::from(is_wrong), place }, largest: error });
             }
             row
         })?;
         let mut all = Worst { found: Self::default(), largest: tolerance };
-        rows.into_iter().for_each(|row| all.add(row));
+        rows.into_iter().for_each(|row| all.add(&row));
         Ok(all.found)
     }
 }
@@ -48,7 +48,7 @@ struct Worst {
 
 impl Worst {
     /// Adds the comparison of other pixels.
-    fn add(&mut self, other: Self) {
+    fn add(&mut self, other: &Self) {
         self.found.compared += other.found.compared;
         self.found.wrong += other.found.wrong;
         if other.largest > self.largest {

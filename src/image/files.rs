@@ -14,12 +14,12 @@ use std::path::{Path, PathBuf};
 /// Reads a whole file. Devices and FIFOs are refused, because reading them may never end.
 pub fn read_file(path: &Path) -> Result<Vec<u8>> {
     check_regular(path)?;
-    fs::read(path).map_err(|e| failed(path, e))
+    fs::read(path).map_err(|e| failed(path, &e))
 }
 
 /// Returns an error unless the path leads to a regular file.
 pub fn check_regular(path: &Path) -> Result<()> {
-    if fs::metadata(path).map_err(|e| failed(path, e))?.is_file() {
+    if fs::metadata(path).map_err(|e| failed(path, &e))?.is_file() {
         return Ok(());
     }
     Err(Error::new(ErrorKind::Io, format!("{} is not a regular file", path.display())))
@@ -30,7 +30,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     Target::new(path)?.write(bytes)
 }
 
-fn failed(path: &Path, e: io::Error) -> Error {
+fn failed(path: &Path, e: &io::Error) -> Error {
     let is_memory = e.kind() == io::ErrorKind::OutOfMemory;
     let kind = if is_memory { ErrorKind::OutOfMemory } else { ErrorKind::Io };
     Error::new(kind, format!("{}: {e}", path.display()))
@@ -63,7 +63,7 @@ impl Target {
             Err(_) if cfg!(windows) => Ok(Way::InPlace),
             Err(e) => Err(e),
         };
-        Ok(Self { path: path.to_path_buf(), way: way.map_err(|e| failed(path, e))? })
+        Ok(Self { path: path.to_path_buf(), way: way.map_err(|e| failed(path, &e))? })
     }
 
     pub fn write(&self, bytes: &[u8]) -> Result<()> {
@@ -75,7 +75,7 @@ impl Target {
             },
             Way::InPlace => overwrite(&self.path, bytes),
         };
-        written.map_err(|e| failed(&self.path, e))
+        written.map_err(|e| failed(&self.path, &e))
     }
 }
 

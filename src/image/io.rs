@@ -155,11 +155,11 @@ pub fn encode_png(image: &Image, exposure: f32) -> Result<Vec<u8>> {
         ImageFormat::Png,
     )
     .map_err(|e| Error::new(ErrorKind::Internal, format!("the PNG encoder failed: {e}")))?;
-    state_srgb(out.into_inner())
+    state_srgb(out.get_ref())
 }
 
 /// Inserts an `sRGB` chunk into a PNG, with the relative colorimetric rendering intent.
-fn state_srgb(png: Vec<u8>) -> Result<Vec<u8>> {
+fn state_srgb(png: &[u8]) -> Result<Vec<u8>> {
     const CHUNK: [u8; 13] = *b"\0\0\0\x01sRGB\x01\xd9\xc9\x2c\x7f";
     // Insert the chunk after the signature and the header chunk.
     let (head, pixels) = png.split_at(8 + 25);

@@ -144,11 +144,12 @@ pub fn encode(header: &FileHeader, picture: &Image, number: impl Fn([usize; 2], 
             list.push(ex::AnyChannel::new(text(&name(k, is_high)), ex::FlatSamples::U32(samples)));
         }
     }
-    let mut attributes = ex::LayerAttributes::default();
-    attributes.layer_position = ex::Vec2(header.corner[0] as i32, header.corner[1] as i32);
-    for (name, value) in &header.attributes {
-        attributes.other.insert(text(name), ex::AttributeValue::Text(text(value)));
-    }
+    let other = header.attributes.iter().map(|(name, value)| (text(name), ex::AttributeValue::Text(text(value))));
+    let attributes = ex::LayerAttributes {
+        layer_position: ex::Vec2(header.corner[0] as i32, header.corner[1] as i32),
+        other: other.collect(),
+        ..ex::LayerAttributes::default()
+    };
     let list = ex::AnyChannels::sort(list);
     // Use run-length compression, because it is fast. The stored numbers are sums over random light paths. Their low
     // digits are noise, on which stronger compression would take as long as tracing the paths.

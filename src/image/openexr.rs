@@ -25,6 +25,8 @@ const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 /// short to contain it even at the maximum compression ratio.
 const MAX_TILE_BYTES: usize = 64 << 20;
 
+// By value, as `map_err` passes it.
+#[allow(clippy::needless_pass_by_value)]
 pub(super) fn broken(e: exr::error::Error) -> Error {
     use exr::error::Error as Cause;
     match &e {

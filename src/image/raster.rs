@@ -84,6 +84,8 @@ fn check_frame(bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
+// By value, as `map_err` passes it.
+#[allow(clippy::needless_pass_by_value)]
 pub(super) fn broken(e: ImageError) -> Error {
     match &e {
         ImageError::IoError(io) if io.kind() == std::io::ErrorKind::OutOfMemory => {

@@ -51,6 +51,10 @@ impl Tensor {
         }
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     pub fn bytes(&self) -> usize {
         match &self.data {
             Data::Floats(values) => 4 * values.len(),

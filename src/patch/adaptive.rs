@@ -176,7 +176,7 @@ impl Votes {
         let Some(offset) = self.offset[at[CENTRE]].filter(|_| at.iter().all(|&i| self.offset[i].is_some())) else {
             return Power::default();
         };
-        let (style, (u, v)) = (ballot.style, ballot.source(offset, [x, y]));
+        let (style, (u, v)) = (ballot.style, Ballot::source(offset, [x, y]));
         let sources = around([u, v], [style.width, style.height]).map(|(u, v)| v * style.width + u);
         let mut power = Power::default();
         for c in 0..self.channels {

@@ -33,14 +33,14 @@ impl<'a> Ballot<'a> {
 
     /// Returns the position of the exemplar pixel at an offset from a target pixel.
     #[inline]
-    pub fn source(&self, offset: u32, [x, y]: [usize; 2]) -> (usize, usize) {
+    pub fn source(offset: u32, [x, y]: [usize; 2]) -> (usize, usize) {
         unpack(offset.wrapping_add(pack(x, y)))
     }
 
     /// Returns the colour of the exemplar pixel at an offset from a target pixel.
     #[inline]
     pub fn colour(&self, offset: u32, at: [usize; 2]) -> &'a [f32] {
-        let (x, y) = self.source(offset, at);
+        let (x, y) = Self::source(offset, at);
         self.style.pixel(x, y)
     }
 

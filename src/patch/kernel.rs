@@ -29,7 +29,7 @@ impl Kernel {
     #[inline]
     pub fn distance(self, a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
         let end = |p: &Patch| (rows - 1) * p.row_len + run;
-        assert!(rows > 0 && run % 8 == 0 && end(&a) <= a.samples.len() && end(&b) <= b.samples.len());
+        assert!(rows > 0 && run.is_multiple_of(8) && end(&a) <= a.samples.len() && end(&b) <= b.samples.len());
         match self.0 {
             Level::Baseline => portable(a, b, run, rows, limit),
             // SAFETY: the processor supports the detected level and all levels below, and the assertion above keeps
@@ -72,7 +72,7 @@ unsafe fn avx2(a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
                 x = x.add(16);
                 y = y.add(16);
             }
-            if run % 16 != 0 {
+            if !run.is_multiple_of(16) {
                 let d = _mm_sub_epi16(_mm_loadu_si128(x.cast()), _mm_loadu_si128(y.cast()));
                 sums = _mm256_add_epi32(sums, _mm256_zextsi128_si256(_mm_madd_epi16(d, d)));
             }

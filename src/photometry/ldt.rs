@@ -304,7 +304,7 @@ mod tests {
         let mut lines: Vec<String> = ["Works", "3"].map(String::from).into();
         lines.push(symmetry.to_string());
         lines.push(planes.to_string());
-        lines.extend([(360.0 / planes as f64).to_string(), "2".into(), "90".into(), "".into(), "Lamp".into()]);
+        lines.extend([(360.0 / planes as f64).to_string(), "2".into(), "90".into(), String::new(), "Lamp".into()]);
         lines.extend(
             ["", "", "", "1200", "300", "80", "1190", "0", "0", "0", "0", "0", "100", "80", "1", "0"].map(String::from),
         );

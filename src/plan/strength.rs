@@ -78,13 +78,13 @@ impl Strength {
         Curve::of_independent(
             min_seconds,
             max_seconds,
-            self.contribution(self.half_width(SOLUTION_PATHS[0]), contrast).powi(2),
+            Self::contribution(self.half_width(SOLUTION_PATHS[0]), contrast).powi(2),
         )
     }
 
     /// Returns how much a solution contributes to the error of a picture of the given contrast, from the relative
     /// half-width of the solution's confidence interval.
-    pub fn contribution(&self, half_width: f64, contrast: f64) -> f64 {
+    pub fn contribution(half_width: f64, contrast: f64) -> f64 {
         half_width / HALF_WIDTH * contrast
     }
 

@@ -47,13 +47,13 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     // building it. Allocate the rest along the error curves of the stages.
     let light = match goal {
         Goal::Seconds(budget) => Goal::Seconds((budget - 2.0 * building).max(0.0)),
-        error => error,
+        Goal::Error(_) => goal,
     };
     let contrast = picture.contrast();
     let seconds = allocate(&[strength.curve(contrast), picture.curve()], light);
     let (relight, mut solving) = strength.plan(&transfer.params.relight, goal, seconds[0]);
     let Rendering { params: render, expected: mut rendering } = picture.plan(&transfer.params.render, goal, seconds[1]);
-    let error = strength.contribution(solving.error, contrast).hypot(rendering.error);
+    let error = Strength::contribution(solving.error, contrast).hypot(rendering.error);
     solving.seconds += building;
     rendering.seconds += building;
     let whole = Expected { seconds: solving.seconds + rendering.seconds, error };

@@ -48,7 +48,7 @@ pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3
     keep_sides(&mut answers, constraint);
     let status = answers.each_ref().map(|a| a.status);
     if status.iter().all(|&r| r != TargetStatus::Met) {
-        return Err(Error::new(ErrorKind::Unreachable, explain(&status)));
+        return Err(Error::new(ErrorKind::Unreachable, explain(status)));
     }
     // Give channels without response the mean scale of the channels that met their target, so that they are neither
     // black nor extrapolated.
@@ -153,7 +153,7 @@ fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64
     STUDENT_T * (squares.sum::<f64>() / BATCHES as f64).sqrt()
 }
 
-fn explain(status: &[TargetStatus; 3]) -> String {
+fn explain(status: [TargetStatus; 3]) -> String {
     if status.iter().all(|&r| r == TargetStatus::Dark) {
         "no light of the emission finds its way back to the target surface: it may face away from the room, or be \
          all lamps, which are left out, or everything around it may be black; choose another target surface"

@@ -166,7 +166,7 @@ pub fn unlabelled(input: &Input, channels: &[usize]) -> Vec<f64> {
     let features = input.features;
     // The step must not divide the width: otherwise only a few columns would be sampled.
     let step = (features.width * features.height).div_ceil(MAX_UNLABELLED) | 1;
-    let step = if features.width % step == 0 && step > 1 { step + 2 } else { step };
+    let step = if features.width.is_multiple_of(step) && step > 1 { step + 2 } else { step };
     let looked_at = |p: &usize| input.region.is_none_or(|w| w.data[*p] > 0.5);
     (0..features.width * features.height)
         .step_by(step)

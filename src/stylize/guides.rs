@@ -114,7 +114,7 @@ pub(super) fn no_guides() -> Error {
 /// change that is applied. A range extends from the 5th to the 95th percentile.
 fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f32) {
     let ends = |image: &Image| {
-        let step = (image.width * image.height >> 18).max(1) * image.channels;
+        let step = ((image.width * image.height) >> 18).max(1) * image.channels;
         let mut values: Vec<f32> = image.data.iter().skip(channel).step_by(step).copied().collect();
         values.sort_unstable_by(f32::total_cmp);
         let at = |percent: usize| values[(values.len() - 1) * percent / 100];

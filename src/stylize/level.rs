@@ -64,7 +64,7 @@ impl Problem {
             input.known.map(|known| encode_known(known, first.target, artwork.channels, job)).transpose()?;
         if half {
             (broken, style) = (halve_mask(&broken, style.width, style.height, true)?, halve(&style, job)?);
-            source_mask = halve_source_mask(&source_mask, artwork)?;
+            source_mask = halve_source_mask(source_mask.as_deref(), artwork)?;
             let (width, height) = (first.target.width, first.target.height);
             target_mask = target_mask.map(|m| halve_mask(&m, width, height, true)).transpose()?;
             known = known.map(|k| halve(&k, job)).transpose()?;
@@ -125,7 +125,7 @@ impl Problem {
         Ok(Self {
             patch: self.patch,
             style: halve(&self.style, job)?,
-            source_mask: halve_source_mask(&self.source_mask, source)?,
+            source_mask: halve_source_mask(self.source_mask.as_deref(), source)?,
             target_mask: (self.target_mask.as_ref())
                 .map(|m| halve_mask(m, target.width, target.height, true))
                 .transpose()?,
@@ -163,7 +163,7 @@ fn check_motion(input: &Input, target: &Image) -> Result<()> {
 /// Halves the mask of usable exemplar pixels; `of` gives the size of the mask. A coarse pixel is usable if all fine
 /// pixels under it are usable. If this leaves no usable pixel in the whole mask, one usable fine pixel suffices
 /// everywhere, so that a mask of thin regions alone does not become empty.
-fn halve_source_mask(mask: &Option<Vec<bool>>, of: &Image) -> Result<Option<Vec<bool>>> {
+fn halve_source_mask(mask: Option<&[bool]>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     let inside = halve_mask(mask, of.width, of.height, false)?;
     Ok(Some(if inside.contains(&true) { inside } else { halve_mask(mask, of.width, of.height, true)? }))

@@ -177,7 +177,7 @@ impl Params {
     /// Checks that every setting is in its range.
     pub fn check(&self) -> Result<()> {
         check_range("patch", self.patch, 1, 33)?;
-        if self.patch % 2 == 0 {
+        if self.patch.is_multiple_of(2) {
             return Err(Error::argument(format!("patch is {}; it must be odd", self.patch)));
         }
         check_range("guide_weight", self.guide_weight, 0.0, 1e6)?;

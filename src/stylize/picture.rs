@@ -48,6 +48,7 @@ pub(super) fn decode(picture: &Image, job: Job) -> Result<Image> {
 }
 
 /// The input of the decoder: the matches, and the images from which the matched patches were painted.
+#[derive(Clone, Copy)]
 pub(super) struct DecodeInput<'a> {
     pub field: &'a Field,
     pub problem: &'a Problem,

@@ -41,5 +41,5 @@ fn texels(layer: &Layer, instance: &Instance, width: usize, height: usize) -> Op
     let high = ((last + shift) / layer.scale).ceil() + 1.0;
     let low = low.max(DVec2::ZERO);
     let high = high.min(DVec2::new(width as f64, height as f64));
-    (low.x < high.x && low.y < high.y).then(|| [low.x as usize, low.y as usize, high.x as usize, high.y as usize])
+    (low.x < high.x && low.y < high.y).then_some([low.x as usize, low.y as usize, high.x as usize, high.y as usize])
 }

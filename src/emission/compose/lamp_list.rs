@@ -132,7 +132,7 @@ impl LampList {
         if whole.outline.iter().all(|p| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {
             return whole;
         }
-        within(whole, size)
+        within(&whole, size)
     }
 }
 
@@ -141,7 +141,7 @@ fn flux(lamp: &Luminaire) -> f64 {
 }
 
 /// Clips a lamp to a texture of the given size in texels, and measures the remaining part.
-fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
+fn within(lamp: &Luminaire, size: DVec2) -> Luminaire {
     let sides = [(DVec2::NEG_X, 0.0), (DVec2::NEG_Y, 0.0), (DVec2::X, size.x), (DVec2::Y, size.y)];
     let outline =
         sides.iter().fold(lamp.outline.clone(), |outline, &(normal, offset)| polygon::clip(&outline, normal, offset));
@@ -149,7 +149,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
     let left = polygon::area(&outline).abs();
     let share = if all > 0.0 { (left / all).min(1.0) } else { 0.0 };
     if share <= 0.0 {
-        return Luminaire { area: 0.0, outline: Vec::new(), kind: 0, ..lamp };
+        return Luminaire { area: 0.0, outline: Vec::new(), kind: 0, ..*lamp };
     }
     let axis = DVec2::from_angle(lamp.orientation);
     let extent = |axis: DVec2| polygon::extent(&outline, axis);
@@ -159,7 +159,7 @@ fn within(lamp: Luminaire, size: DVec2) -> Luminaire {
         angle if size.x >= size.y => (size, angle),
         angle => (size.yx(), if angle > 0.0 { angle - quarter } else { angle + quarter }),
     };
-    Luminaire { centre: centroid(&outline), size, orientation, area: lamp.area * share, outline, kind: 0, ..lamp }
+    Luminaire { centre: centroid(&outline), size, orientation, area: lamp.area * share, outline, kind: 0, ..*lamp }
 }
 
 /// The centroid of the area that a polygon encloses.

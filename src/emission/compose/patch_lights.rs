@@ -105,7 +105,7 @@ impl ConnectedLights {
         if a != b {
             let (low, high) = (a.min(b), a.max(b));
             let part = std::mem::take(&mut self.parts[high as usize]);
-            self.parts[low as usize].merge(part);
+            self.parts[low as usize].merge(&part);
             self.into[high as usize] = low;
         }
     }
@@ -177,9 +177,9 @@ impl Light {
     }
 
     /// Merges another light into this one. The first row of `other` must not lie above the first row of this light.
-    fn merge(&mut self, other: Self) {
+    fn merge(&mut self, other: &Self) {
         let by = other.origin - self.origin;
-        let Self { area, centres: c, squares: s, .. } = other;
+        let Self { area, centres: c, squares: s, .. } = *other;
         self.squares += s
             + DVec3::new(2.0 * c.x * by.x, c.x * by.y + c.y * by.x, 2.0 * c.y * by.y)
             + DVec3::new(by.x * by.x, by.x * by.y, by.y * by.y) * area;

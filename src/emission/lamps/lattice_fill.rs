@@ -93,7 +93,7 @@ pub fn place(
 pub fn end<'a>(sites: &'a Sites, exemplar: &Exemplar) -> Option<impl Fn(DVec2) -> bool + use<'a>> {
     let filled: Vec<&Site> = sites.list.iter().filter(|site| is_always_taken(site, exemplar)).collect();
     let all_end = !filled.is_empty() && filled.iter().all(|site| site.ends());
-    all_end.then(|| move |position| !filled.iter().any(|site| sites.continues(site, position)))
+    all_end.then_some(move |position| !filled.iter().any(|site| sites.continues(site, position)))
 }
 
 /// Whether a site gets a lamp in every cell. On a luminous ceiling, every site does: panes cover it without gaps.

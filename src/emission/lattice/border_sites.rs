@@ -69,7 +69,7 @@ fn one_lamp_per_site(exemplar: &Exemplar, inverse: DMat2) -> Vec<&Component> {
             let steps = inverse * (lamp.centre - other.centre);
             (steps - steps.round()).length() < MAX_OFF_SITE
         };
-        if !first.iter().any(|other| is_there(other)) {
+        if !first.iter().any(is_there) {
             first.push(lamp);
         }
     }

@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn distances_are_signed_capped_and_finite_without_light() {
         let monitor = Monitor::default();
-        let mut lit = vec![false; 11 * 3];
+        let mut lit = [false; 11 * 3];
         lit[11 + 5] = true;
         let metadata = compute(&[0.5; 33], |i| lit[i], 11, 3, 4.0, monitor.job()).unwrap();
         assert_eq!(metadata.pixel(5, 1), [0.5, 0.0, 0.0]);

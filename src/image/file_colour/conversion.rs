@@ -4,7 +4,7 @@ use super::curve::Curve;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::{Image, try_vec};
 use glam::{DMat3, Mat3, Vec3};
-use moxcms::{CmsError, TransformF32Executor};
+use moxcms::TransformF32Executor;
 use std::sync::Arc;
 
 /// The conversion from the samples of a file (integers scaled to `[0, 1]`) to linear Rec.709.
@@ -83,10 +83,6 @@ impl Conversion {
     }
 }
 
-fn failed(e: CmsError) -> Error {
-    Error::new(ErrorKind::Internal, format!("the colours could not be converted: {e}"))
-}
-
 fn each_colour(image: &mut Image, convert: impl Fn(Vec3) -> Vec3) {
     for pixel in image.data.chunks_exact_mut(image.channels) {
         convert(Vec3::from_slice(pixel)).write_to_slice(pixel);
@@ -107,7 +103,8 @@ fn apply_tables(image: &mut Image, to_srgb: &TransformF32Executor, curve: &Curve
         for (stored, pixel) in stored.chunks_exact_mut(3).zip(row.chunks_exact(channels)) {
             stored.copy_from_slice(&pixel[..3]);
         }
-        to_srgb.transform(&stored, &mut srgb).map_err(failed)?;
+        let converted = to_srgb.transform(&stored, &mut srgb);
+        converted.map_err(|e| Error::new(ErrorKind::Internal, format!("the colours could not be converted: {e}")))?;
         for (srgb, pixel) in srgb.chunks_exact(3).zip(row.chunks_exact_mut(channels)) {
             pixel.iter_mut().zip(srgb).for_each(|(v, &code)| *v = curve.at(code.max(0.0)));
         }

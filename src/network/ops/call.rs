@@ -26,9 +26,9 @@ impl<'a> Call<'a> {
     }
 
     /// Returns integers from the attribute `setting` or, as in newer files, from the optional input `k`.
-    pub fn integers(&self, setting: &Option<Vec<i64>>, k: usize) -> Result<Option<Vec<i64>>> {
+    pub fn integers(&self, setting: Option<&[i64]>, k: usize) -> Result<Option<Vec<i64>>> {
         match (setting, self.optional(k)) {
-            (Some(values), _) => Ok(Some(values.clone())),
+            (Some(values), _) => Ok(Some(values.to_vec())),
             (None, Some(tensor)) => tensor.as_integers().map(|values| Some(values.to_vec())),
             (None, None) => Ok(None),
         }

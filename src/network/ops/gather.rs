@@ -103,7 +103,7 @@ impl Pad {
     }
 }
 
-pub fn pad(mode: Pad, pads: &Option<Vec<i64>>, value: f32, call: &Call) -> Result<Tensor> {
+pub fn pad(mode: Pad, pads: Option<&[i64]>, value: f32, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let rank = x.shape.len();
     let pads = call.integers(pads, 1)?.filter(|pads| pads.len() == 2 * rank && call.optional(3).is_none());
@@ -134,18 +134,13 @@ pub fn pad(mode: Pad, pads: &Option<Vec<i64>>, value: f32, call: &Call) -> Resul
     })
 }
 
-pub fn slice(
-    starts: &Option<Vec<i64>>,
-    ends: &Option<Vec<i64>>,
-    axes: &Option<Vec<i64>>,
-    call: &Call,
-) -> Result<Tensor> {
+pub fn slice(starts: Option<&[i64]>, ends: Option<&[i64]>, axes: Option<&[i64]>, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let missing = || Error::format("starts or ends are missing");
     let starts = call.integers(starts, 1)?.ok_or_else(missing)?;
     let ends = call.integers(ends, 2)?.ok_or_else(missing)?;
     let axes = call.integers(axes, 3)?.unwrap_or_else(|| (0..starts.len() as i64).collect());
-    let steps = call.integers(&None, 4)?.unwrap_or_else(|| vec![1; starts.len()]);
+    let steps = call.integers(None, 4)?.unwrap_or_else(|| vec![1; starts.len()]);
     if ends.len() != starts.len() || axes.len() != starts.len() || steps.len() != starts.len() {
         return Err(Error::format("starts, ends, axes and steps differ in length"));
     }

@@ -87,7 +87,7 @@ fn product(left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor> {
     let (stack_a, stack_b) =
         (a.shape.len().checked_sub(2).ok_or_else(wrong)?, b.shape.len().checked_sub(2).ok_or_else(wrong)?);
     let (rows, shared, columns) = (a.shape[stack_a], a.shape[stack_a + 1], b.shape[stack_b + 1]);
-    if b.shape[stack_b] != shared || rows * shared == 0 || columns == 0 || a.len() == 0 || b.len() == 0 {
+    if b.shape[stack_b] != shared || rows * shared == 0 || columns == 0 || a.is_empty() || b.is_empty() {
         return Err(wrong());
     }
 

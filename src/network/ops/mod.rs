@@ -224,15 +224,17 @@ impl Op {
             Self::Softmax { axis, flattens } => one(norm::softmax(*axis, *flattens, call)),
             Self::Reduce(reduce) => one(reduce.run(call)),
             Self::Resize(resize) => one(resize.run(call)),
-            Self::Pad { mode, pads, value } => one(gather::pad(*mode, pads, *value, call)),
+            Self::Pad { mode, pads, value } => one(gather::pad(*mode, pads.as_deref(), *value, call)),
             Self::Reshape { keeps_zero } => one(shapes::reshape(*keeps_zero, call)),
             Self::Flatten { axis } => one(shapes::flatten(*axis, call)),
-            Self::Squeeze { axes } => one(shapes::squeeze(axes, call)),
-            Self::Unsqueeze { axes } => one(shapes::unsqueeze(axes, call)),
+            Self::Squeeze { axes } => one(shapes::squeeze(axes.as_deref(), call)),
+            Self::Unsqueeze { axes } => one(shapes::unsqueeze(axes.as_deref(), call)),
             Self::Transpose { order } => one(gather::transpose(order, call)),
             Self::Concat { axis } => one(shapes::concat(*axis, call)),
-            Self::Split { axis, sizes } => shapes::split(*axis, sizes, call),
-            Self::Slice { starts, ends, axes } => one(gather::slice(starts, ends, axes, call)),
+            Self::Split { axis, sizes } => shapes::split(*axis, sizes.as_deref(), call),
+            Self::Slice { starts, ends, axes } => {
+                one(gather::slice(starts.as_deref(), ends.as_deref(), axes.as_deref(), call))
+            }
             Self::Gather { axis } => one(gather::gather(*axis, call)),
             Self::Expand => one(gather::expand(call)),
             Self::Tile => one(gather::tile(call)),

@@ -33,7 +33,7 @@ impl Reduce {
 
     pub fn run(&self, call: &Call) -> Result<Tensor> {
         let x = call.input(0)?;
-        let axes = call.integers(&self.axes, 1)?.unwrap_or_default();
+        let axes = call.integers(self.axes.as_deref(), 1)?.unwrap_or_default();
         if axes.is_empty() && self.none_if_empty {
             return Ok(x.clone());
         }

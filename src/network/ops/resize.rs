@@ -94,7 +94,7 @@ impl Resize {
         let x = call.input(0)?;
         let rank = x.shape.len();
         let wrong = || Error::format(format!("neither sizes nor scales for the {rank} axes of the input"));
-        let sizes = self.sizes_at.and_then(|k| call.optional(k)).filter(|sizes| sizes.len() > 0);
+        let sizes = self.sizes_at.and_then(|k| call.optional(k)).filter(|sizes| !sizes.is_empty());
         let (shape, scales): (Vec<usize>, Vec<f64>) = if let Some(sizes) = sizes {
             let sizes = super::gather::shape_from(sizes)?;
             let scales = sizes.iter().zip(&x.shape).map(|(&to, &from)| to as f64 / from as f64).collect();
@@ -118,7 +118,7 @@ impl Resize {
                 wrong()
             });
         }
-        if count(&shape)? == 0 || x.len() == 0 {
+        if count(&shape)? == 0 || x.is_empty() {
             return Err(Error::format(format!("shape {:?} cannot be resized to {shape:?}", x.shape)));
         }
         let axis = |k: usize| Axis { from: x.shape[k], to: shape[k], scale: scales[k] };

@@ -37,7 +37,7 @@ pub fn flatten(axis: i64, call: &Call) -> Result<Tensor> {
     x.reshaped(vec![count(&x.shape[..axis])?, count(&x.shape[axis..])?])
 }
 
-pub fn squeeze(axes: &Option<Vec<i64>>, call: &Call) -> Result<Tensor> {
+pub fn squeeze(axes: Option<&[i64]>, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let mut goes: Vec<bool> = x.shape.iter().map(|&n| n == 1).collect();
     if let Some(axes) = call.integers(axes, 1)? {
@@ -50,7 +50,7 @@ pub fn squeeze(axes: &Option<Vec<i64>>, call: &Call) -> Result<Tensor> {
     x.reshaped(shape)
 }
 
-pub fn unsqueeze(axes: &Option<Vec<i64>>, call: &Call) -> Result<Tensor> {
+pub fn unsqueeze(axes: Option<&[i64]>, call: &Call) -> Result<Tensor> {
     let x = call.input(0)?;
     let axes = call.integers(axes, 1)?.ok_or_else(|| Error::format("axes are missing"))?;
     let rank = x.shape.len() + axes.len();
@@ -107,7 +107,7 @@ pub fn concat(axis: i64, call: &Call) -> Result<Tensor> {
     })
 }
 
-pub fn split(axis: i64, sizes: &Option<Vec<i64>>, call: &Call) -> Result<Vec<Tensor>> {
+pub fn split(axis: i64, sizes: Option<&[i64]>, call: &Call) -> Result<Vec<Tensor>> {
     let x = call.input(0)?;
     let axis = x.axis(axis)?;
     let size = x.shape[axis];

@@ -104,19 +104,19 @@ impl Pixel {
     /// Returns an unbiased estimate of the variance of the mean of some replications; infinite if fewer than two of
     /// them have paths.
     fn variance_of(&self, replications: impl Iterator<Item = u32> + Clone) -> DVec3 {
-        let used = || {
-            let sums = replications.clone().map(|r| (self.sums[r as usize].as_dvec3(), r));
-            sums.map(|(sum, r)| (sum, f64::from(paths_of_replication(self.count, r)))).filter(|(_, paths)| *paths > 0.0)
-        };
-        let (sum, paths) = used().fold((DVec3::ZERO, 0.0), |(s, n), (sum, paths)| (s + sum, n + paths));
-        let count = used().count();
+        let sums = replications.map(|r| (self.sums[r as usize].as_dvec3(), r));
+        let used = sums
+            .map(|(sum, r)| (sum, f64::from(paths_of_replication(self.count, r))))
+            .filter(|(_, paths)| *paths > 0.0);
+        let (sum, paths) = used.clone().fold((DVec3::ZERO, 0.0), |(s, n), (sum, paths)| (s + sum, n + paths));
+        let count = used.clone().count();
         if count < 2 {
             return DVec3::INFINITY;
         }
         // Weight each replication by its number of paths, on the assumption that its variance is inversely proportional
         // to this number.
         let mean = sum / paths;
-        let squares: DVec3 = used().map(|(sum, paths)| (sum / paths - mean) * (sum / paths - mean) * paths).sum();
+        let squares: DVec3 = used.map(|(sum, paths)| (sum / paths - mean) * (sum / paths - mean) * paths).sum();
         squares / (count - 1) as f64 / paths
     }
 }

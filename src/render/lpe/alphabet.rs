@@ -8,7 +8,8 @@ use crate::image::regions::Regions;
 use crate::render::contribution::LightSource;
 use crate::scene::{Mesh, Scene, Texture, Wrap, texel_at};
 use glam::Vec2;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
+use std::collections::btree_map::{BTreeMap, Entry};
 use std::sync::Arc;
 
 /// The kinds of scattering at a surface. The discriminants index [`SCATTERS`].
@@ -174,10 +175,10 @@ fn lamp_textures(
     let mut lamp_textures = BTreeMap::new();
     for mesh in scene.meshes.iter().filter(|mesh| names(mesh).iter().any(|name| named.contains(name))) {
         let Some(map) = scene.materials.get(mesh.material).and_then(|m| m.emission_texture) else { continue };
-        if !lamp_textures.contains_key(&mesh.material) {
+        if let Entry::Vacant(place) = lamp_textures.entry(mesh.material) {
             let Texture { image, wrap, .. } = &scene.textures[map.texture];
             let (size, regions) = ([image.width, image.height], Regions::of(image)?);
-            lamp_textures.insert(mesh.material, Arc::new(LampTexture { size, wrap: *wrap, regions }));
+            place.insert(Arc::new(LampTexture { size, wrap: *wrap, regions }));
         }
     }
     Ok(lamp_textures)

@@ -171,7 +171,7 @@ fn read_vectors<const N: usize>(file: &File, index: Index<accessor::Accessor>) -
         }
     };
     if let Some(sparse) = &accessor.sparse {
-        let (positions, changes) = sparse_parts(file, sparse, &strided)?;
+        let (positions, changes) = sparse_parts(file, sparse, strided)?;
         for i in 0..sparse.count.0 as usize {
             let at = positions.unsigned(i)? as usize;
             *out.get_mut(at).ok_or_else(|| Error::format(format!("a sparse index is {at}, beyond {count}")))? =

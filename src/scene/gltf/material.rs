@@ -197,7 +197,7 @@ impl<'a> Materials<'a> {
             None => [Wrap::Repeat; 2],
             Some(index) => {
                 let sampler = root.get(index).ok_or_else(|| missing("sampler", index.value(), root.samplers.len()))?;
-                [wrapping(&sampler.wrap_s)?, wrapping(&sampler.wrap_t)?]
+                [wrapping(sampler.wrap_s)?, wrapping(sampler.wrap_t)?]
             }
         };
         // The crate `gltf` stores this index for a texture without an image.
@@ -267,7 +267,7 @@ fn place(uv_set: u32, transform: Option<&extensions::texture::TextureTransform>)
     Ok(TextureRef { texture: 0, uv_set, transform: transform.map_or(Mat3::IDENTITY, matrix) })
 }
 
-fn wrapping(mode: &Checked<texture::WrappingMode>) -> Result<Wrap> {
+fn wrapping(mode: Checked<texture::WrappingMode>) -> Result<Wrap> {
     match mode {
         Checked::Valid(texture::WrappingMode::Repeat) => Ok(Wrap::Repeat),
         Checked::Valid(texture::WrappingMode::ClampToEdge) => Ok(Wrap::Clamp),

@@ -33,7 +33,7 @@ pub fn parse(text: &str, width: usize, height: usize) -> Result<StrokeSet> {
         let numbers: Vec<f64> = words
             .map(|w| w.parse().map_err(|_| Error::format(format!("'{w}' is not a number")).context(place())))
             .collect::<Result<_>>()?;
-        if numbers.len() < 3 || numbers.len() % 2 == 0 {
+        if numbers.len() < 3 || numbers.len().is_multiple_of(2) {
             let what =
                 format!("a radius and pairs of x and y are needed after '{word}'; there are {} numbers", numbers.len());
             return Err(Error::format(what).context(place()));
