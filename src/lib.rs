@@ -82,6 +82,7 @@ pub mod stylize;
 
 pub mod demo;
 pub mod guides;
+pub mod schedule;
 pub mod sheet;
 pub mod transfer;
 

@@ -56,7 +56,7 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
 
     // Check the lamps: in metres, they have the size and spacing of those in the photo. Only whole lamps count,
     // because the border of the ceiling cuts others.
-    let fixtures = transfer.fixtures().unwrap();
+    let fixtures = transfer.results.fixtures().unwrap();
     let largest = fixtures.iter().map(|f| f.area).fold(0.0, f64::max);
     let whole: Vec<_> = fixtures.iter().filter(|f| f.area > 0.8 * largest).collect();
     let areas: Vec<f64> = fixtures.iter().map(|f| f.area).collect();
@@ -213,7 +213,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     transfer.input.texture = Some(Arc::new(stripe.clone()));
     pool.run(|| transfer.run(Stage::Emission, Stage::Relight, monitor.job(), |_| {})).unwrap();
     assert_eq!(transfer.results.emission.as_ref().unwrap().texture, stripe);
-    let fixtures = transfer.fixtures().unwrap();
+    let fixtures = transfer.results.fixtures().unwrap();
     assert_eq!(fixtures.len(), 1);
     assert!((fixtures[0].area - 6.0 * 4.0 / 12.0).abs() < 1e-3, "{} m²", fixtures[0].area);
     transfer.input.texture = Some(Arc::new(Image::new(4, 4, 3).unwrap()));

@@ -7,8 +7,6 @@
 
 mod check;
 mod pattern;
-mod schedule;
-mod schedule_file;
 mod stages;
 mod texel_zones;
 mod warnings;
@@ -17,8 +15,6 @@ pub use crate::emission::{CameraDistance, Scale};
 pub use crate::relight::TargetColour;
 pub use check::check_zones;
 pub use pattern::Pattern;
-pub use schedule::Fixture;
-pub use schedule_file::{to_csv, to_json};
 
 use crate::emission::{self, Emission};
 use crate::error::{Error, ErrorKind, Result};

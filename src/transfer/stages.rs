@@ -8,6 +8,7 @@ use crate::job::Job;
 use crate::render::World;
 use crate::scene::Camera;
 use crate::scene::surface::{self, Surface};
+use crate::schedule::{self, Fixture};
 use crate::segment::Stroke;
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
@@ -306,6 +307,13 @@ impl Transfer {
 }
 
 impl Results {
+    /// Lists the lamps of the lit scene. Errors: the emission or the solution is missing.
+    pub fn fixtures(&self) -> Result<Vec<Fixture>> {
+        let emission = need(&self.emission, "run stage Emission")?;
+        let lit = need(&self.lit, "run stage Relight")?;
+        Ok(schedule::fixtures(emission, &lit.surface, lit.scene.materials[lit.placed.material].emission))
+    }
+
     /// Undoes the corrections that earlier runs made because of the lamps: restores the view found from the photo's
     /// lines, and clears the lamps found beyond the plane, for which the room was enlarged.
     pub(super) fn forget_lamps(&mut self) {

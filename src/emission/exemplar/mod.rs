@@ -11,7 +11,6 @@ pub mod panes;
 pub mod roles;
 pub mod working;
 
-use super::agreement::statistics::{Pattern, Statistics};
 use super::params::Input;
 use crate::error::{Error, Result};
 use crate::geometry::PhotoMap;
@@ -94,29 +93,6 @@ impl Exemplar {
         })
     }
 
-    /// The statistics of the pattern, with lengths in unwarped pixels. Points of the unwarped image for which
-    /// `is_left_out` is true are left out. `periods` has the meaning of [`Pattern::periods`].
-    pub fn statistics(
-        &self,
-        unwarped: &Image,
-        periods: [Option<f64>; 2],
-        is_left_out: impl Fn(DVec2) -> bool,
-    ) -> Statistics {
-        // Every component that is copied as one piece counts as a lamp.
-        let Self { width, height, components, .. } = self;
-        let pieces: Vec<bool> = self.roles.iter().map(|role| role.is_piece()).collect();
-        // The pattern of a luminous ceiling continues without the dark border around its panes, so measure only inside
-        // the bounding box of the panes.
-        let [low, high] = if self.is_luminous_ceiling() { self.box_of_lights() } else { [[0, 0], [*width, *height]] };
-        let is_inside = |x: usize, y: usize| x >= low[0] && y >= low[1] && x <= high[0] && y <= high[1];
-        let colour = |i: usize| {
-            let (x, y) = (i % width, i / width);
-            let centre = DVec2::new(x as f64, y as f64) + 0.5;
-            (self.shown[i] && is_inside(x, y) && !is_left_out(centre)).then(|| unwarped.rgb(x, y))
-        };
-        Statistics::of(&Pattern { width: *width, height: *height, components, whole: &pieces, periods, colour })
-    }
-
     /// The share of an unwarped pixel that light covers, equal to the confidence in `light`. It is 0 for a pixel that
     /// the photo does not show, for a lit pixel without a component, and for an index beyond the last pixel. Unlit
     /// pixels keep their confidence, which fades out beside lamps.
@@ -139,7 +115,7 @@ impl Exemplar {
     }
 
     /// The bounding box of the lights: `[[first column, first row], [last column, last row]]`, inclusive.
-    fn box_of_lights(&self) -> [[usize; 2]; 2] {
+    pub fn box_of_lights(&self) -> [[usize; 2]; 2] {
         let corners =
             |a: [usize; 2], b: [usize; 2], pick: fn(usize, usize) -> usize| [pick(a[0], b[0]), pick(a[1], b[1])];
         let lights = &self.components.list;

@@ -8,6 +8,7 @@
 use super::block::{BlockPixel, BlockTracer, blocks};
 use super::camera_rays::CameraRays;
 use super::grid::{AREA, Grid, TILE};
+use super::part::Part;
 use super::pixel::{REPLICATIONS, paths_of_replication};
 use super::prepass::Prepass;
 use crate::error::Result;
@@ -16,7 +17,6 @@ use crate::image::try_vec;
 use crate::job::Job;
 use crate::render::layers::Layers;
 use crate::render::params::Params;
-use crate::render::parts::Part;
 use crate::render::path::{MAX_BOUNCES, PathLength};
 use crate::render::world::World;
 use crate::scene::Camera;

@@ -1,7 +1,7 @@
 //! Checks that the parts of a render cover its image: each path of each pixel must belong to exactly one part.
 
+use super::Part;
 use super::file::File;
-use super::part::Part;
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use crate::job::Job;

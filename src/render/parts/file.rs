@@ -1,8 +1,8 @@
 //! Files that hold the sums of a rendered part, in the format of `image::numbers`, with the part's place in the image
 //! and the identity of the render.
 
+use super::Part;
 use super::identity::Identity;
-use super::part::Part;
 use crate::error::{Error, Result};
 use crate::image::numbers::{self, FileHeader};
 use crate::image::{Image, io};

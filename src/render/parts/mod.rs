@@ -19,10 +19,9 @@
 mod cover;
 mod file;
 mod identity;
-mod part;
 
+pub use super::film::Part;
 pub use file::File;
-pub use part::Part;
 
 use super::film::{Accumulator, Sums};
 use super::output::Film;

@@ -1,7 +1,7 @@
 //! A part of a render, and the division of a render into parts.
 
+use super::grid::TILE;
 use crate::error::{Error, Result, check_range};
-use crate::render::film::TILE;
 use crate::render::params::Params;
 use std::fmt;
 
@@ -46,7 +46,7 @@ impl Part {
         x.wrapping_sub(self.x) < self.width && y.wrapping_sub(self.y) < self.height
     }
 
-    pub(super) fn check(&self, params: &Params) -> Result<()> {
+    pub fn check(&self, params: &Params) -> Result<()> {
         let within = |start: usize, size: usize, whole: usize| size > 0 && start < whole && size <= whole - start;
         let paths = (self.first as usize, self.samples as usize, params.samples as usize);
         if within(self.x, self.width, params.width)

@@ -1,11 +1,13 @@
-//! The luminaire schedule: lists every lamp of the solved texture as a fixture in the room.
+//! The luminaire schedule: lists every lamp of an emissive texture as a fixture in the room, with its photometric data.
 
-use super::check::need;
-use super::{LitScene, Results, Transfer};
-use crate::emission::Emission;
-use crate::error::Result;
+mod file;
+
+pub use file::{to_csv, to_json};
+
+use crate::emission::{Emission, Luminaire};
 use crate::image::colour::luminance;
 use crate::photometry::temperature;
+use crate::scene::surface::Surface;
 use glam::{DVec2, Vec3};
 use std::f64::consts::PI;
 
@@ -30,32 +32,20 @@ pub struct Fixture {
     /// ([`crate::photometry::temperature::Temperature`]); both 0 for a lamp that is off.
     pub cct: f64,
     pub duv: f64,
-    /// Number of the lamp's kind, as in [`crate::emission::Luminaire`].
+    /// Number of the lamp's kind, as in [`Luminaire`].
     pub kind: u32,
     /// Corners of the outline in scene coordinates, in metres.
     pub outline: Vec<Vec3>,
 }
 
-impl Transfer {
-    /// Lists the lamps of the lit scene. Errors: the emission or the solution is missing.
-    pub fn fixtures(&self) -> Result<Vec<Fixture>> {
-        self.results.fixtures()
-    }
+/// Lists the lamps of an emissive texture on a surface of the scene. `strength` is the emission of the surface's
+/// material: the luminance per channel, in cd/m², of a texel with the value 1.
+pub fn fixtures(emission: &Emission, surface: &Surface, strength: Vec3) -> Vec<Fixture> {
+    emission.luminaires.iter().map(|lamp| fixture(emission, surface, strength, lamp)).collect()
 }
 
-impl Results {
-    /// Lists the lamps of the lit scene; see [`Transfer::fixtures`].
-    pub fn fixtures(&self) -> Result<Vec<Fixture>> {
-        let emission = need(&self.emission, "run stage Emission")?;
-        let lit = need(&self.lit, "run stage Relight")?;
-        Ok(emission.luminaires.iter().map(|lamp| fixture(emission, lit, lamp)).collect())
-    }
-}
-
-fn fixture(emission: &Emission, lit: &LitScene, lamp: &crate::emission::Luminaire) -> Fixture {
-    let surface = &lit.surface;
+fn fixture(emission: &Emission, surface: &Surface, strength: Vec3, lamp: &Luminaire) -> Fixture {
     let (width, height) = (emission.texture.width as f64, emission.texture.height as f64);
-    let strength = lit.scene.materials[lit.placed.material].emission;
     let texel = DVec2::new(f64::from(surface.size.x) / width, f64::from(surface.size.y) / height);
     let on_surface = |texels: DVec2| {
         let p = (texels * texel).as_vec2();
