@@ -32,7 +32,7 @@ pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
 pub const LUXFER_DISTRIBUTION_TM33: luxfer_distribution_format = 2;
 /// GLDF container (.gldf): a product with variants, of which one is read.
 pub const LUXFER_DISTRIBUTION_GLDF: luxfer_distribution_format = 3;
-/// Any of these formats, told by the content of the file.
+/// Any of these formats: the content of the file decides which.
 pub const LUXFER_DISTRIBUTION_ANY: luxfer_distribution_format = 4;
 
 /// Summary of a luminous intensity distribution.
