@@ -124,6 +124,13 @@ for file in libluxfer.so libluxfer.a; do
   readelf -S "$file" 2>/dev/null | grep -q '\.debug_line' && fail "$file still has debug symbols"
 done
 readelf -S .debug/libluxfer.so.*.debug | grep -q '\.debug_line' || fail "the debug symbols are lost"
+readelf -S libluxfer.so | grep -q '\.symtab' && fail "libluxfer.so still has its symbol table"
+readelf -S .debug/libluxfer.so.*.debug | grep -q '\.symtab' || fail "the symbol table is lost"
+# All names by which programs link are left.
+nm -D --defined-only --format=posix libluxfer.so | cut -d' ' -f1 | sort >"$scratch/installed.names"
+nm -D --defined-only --format=posix "$built/libluxfer.so" | cut -d' ' -f1 | sort >"$scratch/built.names"
+[ "$(grep -c '^luxfer_' "$scratch/installed.names")" -gt 100 ] || fail "the library lacks functions"
+cmp "$scratch/built.names" "$scratch/installed.names" || fail "the library exports other names than the built one"
 
 step "no folders of this machine"
 # The libraries must name neither cargo's folder of dependencies nor the source tree. Those built by cargo alone name
