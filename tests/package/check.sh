@@ -104,6 +104,8 @@ step "pkg-config"
 by_pkg_config "$scratch/prefix/$lib"
 by_pkg_config_static
 names_of_static "$scratch/prefix/$lib"
+step "a program of 0.1"
+"$source/tests/abi/old_program.sh" "$source" "$scratch/prefix/$lib" "$scratch/old_program"
 step "find_package"
 by_cmake found -DCMAKE_PREFIX_PATH="$scratch/prefix"
 
