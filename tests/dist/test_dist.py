@@ -87,6 +87,29 @@ class Bill(unittest.TestCase):
             self.assertLessEqual(set(edge["dependsOn"]), known)
 
 
+class Crate(unittest.TestCase):
+    """The files that cargo packs into the crate."""
+
+    def test_it_contains_what_a_build_reads_and_no_more(self):
+        command = ["cargo", "package", "--list", "--allow-dirty", "--offline"]
+        run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        self.assertNotIn("warning", run.stderr)
+        names = {name for name in run.stdout.split() if (ROOT / name).exists()}
+        others = {n for n in names if not re.match(r"(src|include)/.*\.(rs|h)$", n)}
+        wanted = {"Cargo.toml", "Cargo.lock", "build.rs", "README.md", "CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT"}
+        self.assertEqual(others, wanted)
+        sources = {p.relative_to(ROOT).as_posix() for folder in ("src", "include") for p in (ROOT / folder).rglob("*.*")}
+        self.assertEqual(names - wanted, sources)
+        self.assertLess(sum((ROOT / n).stat().st_size for n in names), 8e6, "crates.io allows 10 MB, packed")
+        # No source includes a file that is not packed.
+        for name in names:
+            if name.endswith(".rs"):
+                text = (ROOT / name).read_text()
+                for included in re.findall(r'include(?:_str|_bytes)?!\("([^"]+)"\)', text):
+                    path = os.path.normpath(os.path.join(os.path.dirname(name), included))
+                    self.assertIn(path, names, f"{name} includes {included}")
+
+
 class Extension(unittest.TestCase):
     """The Blender extension from the wheel of any platform; a text stands in for the library."""
 
