@@ -28,7 +28,7 @@ dist-%: dist-setup
 	@$(MAKE) --no-print-directory dist-sums
 
 dist-sums:
-	@cd $(DIST) && sha256sum luxfer-* luxfer_lighting-* >SHA256SUMS && cat SHA256SUMS
+	@cd $(DIST) && sha256sum luxfer*-* >SHA256SUMS && cat SHA256SUMS
 
 dist-check: dist-setup
 	@for target in $(TARGETS); do bindings/dist/check.sh $$target || exit 1; done
