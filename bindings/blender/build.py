@@ -1,7 +1,7 @@
 """Builds the extension into a folder: the add-on with the wheel of bindings/python inside.
 
-    python3 bindings/blender/build.py [FOLDER, out/blender by default]    for this platform
-    python3 bindings/blender/build.py FOLDER --wheel luxfer-0.2.0-py3-none-win_amd64.whl    for the platform of the wheel
+    python3 bindings/blender/build.py [FOLDER, out/blender by default]     for this platform
+    python3 bindings/blender/build.py FOLDER --wheel luxfer-....whl        for the platform of the wheel
 
 Install the .zip in Blender by Edit > Preferences > Get Extensions > Install from Disk. numpy comes with Blender. Equal
 sources and wheels give equal bytes: all files get the time SOURCE_DATE_EPOCH, as in bindings/dist/archive.py.
