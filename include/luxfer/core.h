@@ -35,6 +35,20 @@ extern "C" {
 /** The version of this header as one number, comparable with luxfer_get_version(). */
 #define LUXFER_VERSION (10000 * LUXFER_VERSION_MAJOR + 100 * LUXFER_VERSION_MINOR + LUXFER_VERSION_PATCH)
 
+/**
+ * Marks a function that will leave the library with a later minor version: compilers warn where a program calls it, and
+ * say what to call instead. Without such warnings, define LUXFER_NO_DEPRECATED before the first include.
+ */
+#if defined(LUXFER_NO_DEPRECATED)
+#  define LUXFER_DEPRECATED(advice)
+#elif defined(__GNUC__) || defined(__clang__)
+#  define LUXFER_DEPRECATED(advice) __attribute__((deprecated(advice)))
+#elif defined(_MSC_VER)
+#  define LUXFER_DEPRECATED(advice) __declspec(deprecated(advice))
+#else
+#  define LUXFER_DEPRECATED(advice)
+#endif
+
 /** Returns the version of the loaded library as one number, comparable with LUXFER_VERSION. Any thread. */
 uint32_t luxfer_get_version(void);
 

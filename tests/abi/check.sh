@@ -22,7 +22,7 @@ cat "$source"/include/luxfer.h "$source"/include/luxfer/*.h | sed -nE 's/^#defin
 # Write an empty body for every function that the header declares.
 {
   echo '#include <luxfer.h>'
-  echo '#include <luxfer.h>' | cc -E -P -x c -I"$source/include" - | tr '\n' ' ' | sed 's/; */;\n/g; s/} */}\n/g' |
+  echo '#include <luxfer.h>' | cc -E -P -DLUXFER_NO_DEPRECATED -x c -I"$source/include" - | tr '\n' ' ' | sed 's/; */;\n/g; s/} */}\n/g' |
     grep -E '^(luxfer_status|const char \*|uint32_t|double|float|void) ?luxfer_[a-z0-9_]+\([^{]*\);$' |
     sed -E 's/^(void .*);$/\1 {}/; s/;$/ { return 0; }/'
 } >functions.c

@@ -17,6 +17,8 @@ endforeach()
 
 string(REGEX REPLACE "/\\*([^*]|\\*+[^*/])*\\*+/" "" header "${header}")
 string(REGEX REPLACE "static inline [^}]*}" "" header "${header}")
+# The wrapper need not call functions that are to go.
+string(REGEX REPLACE "LUXFER_DEPRECATED\\(\"[^;]*;" "" header "${header}")
 string(REGEX MATCHALL "luxfer_[a-z0-9_]+\\(" functions "${header}")
 list(TRANSFORM functions REPLACE "\\(" "")
 list(REMOVE_DUPLICATES functions)

@@ -87,5 +87,91 @@ class Bill(unittest.TestCase):
             self.assertLessEqual(set(edge["dependsOn"]), known)
 
 
+class Crate(unittest.TestCase):
+    """The files that cargo packs into the crate."""
+
+    def test_it_contains_what_a_build_reads_and_no_more(self):
+        command = ["cargo", "package", "--list", "--allow-dirty", "--offline"]
+        run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+        self.assertNotIn("manifest has no", run.stderr)
+        names = {name for name in run.stdout.split() if (ROOT / name).exists()}
+        others = {n for n in names if not re.match(r"(src|include)/.*\.(rs|h)$", n)}
+        wanted = {"Cargo.toml", "Cargo.lock", "build.rs", "README.md", "CHANGELOG.md", "LICENSE-APACHE", "LICENSE-MIT"}
+        self.assertEqual(others, wanted)
+        sources = {p.relative_to(ROOT).as_posix() for folder in ("src", "include") for p in (ROOT / folder).rglob("*.*")}
+        self.assertEqual(names - wanted, sources)
+        self.assertLess(sum((ROOT / n).stat().st_size for n in names), 8e6, "crates.io allows 10 MB, packed")
+        # No source includes a file that is not packed.
+        for name in names:
+            if name.endswith(".rs"):
+                text = (ROOT / name).read_text()
+                for included in re.findall(r'include(?:_str|_bytes)?!\("([^"]+)"\)', text):
+                    path = os.path.normpath(os.path.join(os.path.dirname(name), included))
+                    self.assertIn(path, names, f"{name} includes {included}")
+
+
+class Extension(unittest.TestCase):
+    """The Blender extension from the wheel of any platform; a text stands in for the library."""
+
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.version = tomllib.loads((ROOT / "Cargo.toml").read_text())["package"]["version"]
+
+    def build(self, tag, library, version=None, out="out", epoch="1700000000"):
+        """Builds the extension from a wheel with this tag and this library."""
+        wheel = self.folder / f"luxfer-{version or self.version}-py3-none-{tag}.whl"
+        with zipfile.ZipFile(wheel, "w") as packed:
+            packed.writestr(zipfile.ZipInfo(f"luxfer/{library}"), "the library")
+        command = [sys.executable, ROOT / "bindings" / "blender" / "build.py", self.folder / out, "--wheel", wheel]
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": epoch}
+        return wheel, subprocess.run(command, capture_output=True, text=True, env=environment)
+
+    def test_its_contents_for_each_platform(self):
+        for tag, library, platform in (
+            ("win_amd64", "luxfer.dll", "windows-x64"),
+            ("win_arm64", "luxfer.dll", "windows-arm64"),
+            ("manylinux_2_17_x86_64", "libluxfer.so", "linux-x64"),
+            ("linux_x86_64", "libluxfer.so", "linux-x64"),
+            ("manylinux_2_17_aarch64", "libluxfer.so", "linux-arm64"),
+            ("macosx_11_0_arm64", "libluxfer.dylib", "macos-arm64"),
+        ):
+            with self.subTest(tag):
+                wheel, run = self.build(tag, library)
+                self.assertEqual(run.returncode, 0, run.stderr)
+                made = Path(run.stdout.strip())
+                self.assertEqual(made, self.folder / "out" / f"luxfer_lighting-{self.version}-{platform}.zip")
+                with zipfile.ZipFile(made) as packed:
+                    names = packed.namelist()
+                    manifest = tomllib.loads(packed.read("blender_manifest.toml").decode())
+                    self.assertEqual(packed.read(f"wheels/{wheel.name}"), wheel.read_bytes())
+                self.assertEqual(manifest["platforms"], [platform])
+                self.assertEqual(manifest["wheels"], [f"./wheels/{wheel.name}"])
+                self.assertEqual((manifest["id"], manifest["version"]), ("luxfer_lighting", self.version))
+                add_on = {p.name for p in (ROOT / "bindings" / "blender" / "luxfer_lighting").glob("*.py")}
+                wanted = add_on | {"blender_manifest.toml", "LICENSE-MIT", "LICENSE-APACHE", f"wheels/{wheel.name}"}
+                self.assertEqual(sorted(names), sorted(wanted))
+
+    def test_equal_wheels_give_equal_bytes(self):
+        def made(**options):
+            return Path(self.build("win_amd64", "luxfer.dll", **options)[1].stdout.strip()).read_bytes()
+
+        self.assertEqual(made(), made(out="other"))
+        self.assertNotEqual(made(), made(out="later", epoch="1800000000"))
+
+    def test_wrong_wheels_are_refused(self):
+        for tag, library, version, message in (
+            ("win_amd64", "libluxfer.so", None, "luxfer/luxfer.dll"),
+            ("any", "luxfer.dll", None, "PLATFORM"),
+            ("win_amd64", "luxfer.dll", "9.9.9", "version 9.9.9"),
+        ):
+            with self.subTest(tag):
+                _, run = self.build(tag, library, version)
+                self.assertNotEqual(run.returncode, 0)
+                self.assertIn(message, run.stderr)
+                self.assertFalse((self.folder / "out").exists())
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -104,6 +104,8 @@ step "pkg-config"
 by_pkg_config "$scratch/prefix/$lib"
 by_pkg_config_static
 names_of_static "$scratch/prefix/$lib"
+step "a program of 0.1"
+"$source/tests/abi/old_program.sh" "$source" "$scratch/prefix/$lib" "$scratch/old_program"
 step "find_package"
 by_cmake found -DCMAKE_PREFIX_PATH="$scratch/prefix"
 
@@ -124,6 +126,13 @@ for file in libluxfer.so libluxfer.a; do
   readelf -S "$file" 2>/dev/null | grep -q '\.debug_line' && fail "$file still has debug symbols"
 done
 readelf -S .debug/libluxfer.so.*.debug | grep -q '\.debug_line' || fail "the debug symbols are lost"
+readelf -S libluxfer.so | grep -q '\.symtab' && fail "libluxfer.so still has its symbol table"
+readelf -S .debug/libluxfer.so.*.debug | grep -q '\.symtab' || fail "the symbol table is lost"
+# All names by which programs link are left.
+nm -D --defined-only --format=posix libluxfer.so | cut -d' ' -f1 | sort >"$scratch/installed.names"
+nm -D --defined-only --format=posix "$built/libluxfer.so" | cut -d' ' -f1 | sort >"$scratch/built.names"
+[ "$(grep -c '^luxfer_' "$scratch/installed.names")" -gt 100 ] || fail "the library lacks functions"
+cmp "$scratch/built.names" "$scratch/installed.names" || fail "the library exports other names than the built one"
 
 step "no folders of this machine"
 # The libraries must name neither cargo's folder of dependencies nor the source tree. Those built by cargo alone name

@@ -21,6 +21,15 @@ class Drift(Case):
         check = subprocess.run([sys.executable, PACKAGE / "generate.py", "--check"], capture_output=True, text=True)
         self.assertEqual(check.returncode, 0, check.stderr)
 
+    def test_functions_that_are_to_go_are_read_too(self):
+        sys.path.insert(0, str(PACKAGE))
+        import generate
+
+        text = '/** Does it. */\nLUXFER_DEPRECATED("use luxfer_new(x);")\nluxfer_status luxfer_old(int32_t number);\n'
+        header = generate.read(text)
+        self.assertEqual(list(header.functions), ["luxfer_old"])
+        self.assertEqual(header.docs["luxfer_old"], "Does it.")
+
     def test_every_function_is_bound_with_as_many_arguments_as_it_has(self):
         header = re.sub(r"/\*.*?\*/", "", "".join(p.read_text() for p in (ROOT / "include" / "luxfer").glob("*.h")), flags=re.S)
         declared = dict(re.findall(r"\b(luxfer_\w+)\(([^()]*)\);", header))

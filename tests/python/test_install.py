@@ -1,10 +1,12 @@
 """Tests that pip builds a wheel from the source tree, with the library inside, for any Python on this platform."""
 
 import os
+import shutil
 import subprocess
 import sys
 import unittest
 import zipfile
+from pathlib import Path
 
 from support import PACKAGE, ROOT, Case, in_ci
 
@@ -28,6 +30,13 @@ class Install(Case):
         self.assertIn("luxfer/py.typed", names)
         self.assertTrue(any(n.startswith("luxfer/libluxfer") or n == "luxfer/luxfer.dll" for n in names))
         self.assertTrue(any(n.endswith("LICENSE-MIT") for n in names))
+        if sys.platform == "linux" and shutil.which("strip"):
+            with zipfile.ZipFile(wheel) as archive:
+                library = Path(archive.extract("luxfer/libluxfer.so", self.folder))
+            sections = subprocess.run(["readelf", "-SW", library], check=True, capture_output=True, text=True).stdout
+            self.assertIn(".dynsym", sections)
+            for removed in (".symtab", ".debug_"):
+                self.assertNotIn(removed, sections)
         page = PACKAGE / "luxfer" / "studio" / "static"
         built = {f"luxfer/studio/static/{p.relative_to(page)}" for p in page.rglob("*") if p.is_file()}
         self.assertLessEqual(built | {"luxfer/studio/app.py"}, set(names))
