@@ -1,9 +1,10 @@
-//! Reads and writes IES LM-63 files of all editions from 1986 to 2019, with type C photometry. Types A (car lamps) and
-//! B (floodlights) are refused.
+//! Reads and writes IES LM-63 files of all editions from 1986 to 2019, with photometry of type C, or of type B
+//! (floodlights), which is converted to type C ([`type_b`]). Type A (car lamps) is refused.
 
 use super::luminaire::Luminaire;
 use super::symmetry::unfold;
 use super::text_lines::{self, Lines, MAX_ANGLES, MAX_VALUES, at, count, number, plain, within};
+use super::type_b;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::try_vec;
 use std::fmt::Write;
@@ -47,7 +48,7 @@ impl<'a> Words<'a> {
 /// Reads an IES file held in memory.
 ///
 /// # Errors
-/// `Format`, with the line number, if the file is malformed; `Unsupported` for photometry of types A and B.
+/// `Format`, with the line number, if the file is malformed; `Unsupported` for photometry of type A.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let text = Lines::new(bytes)?;
     // The number after the ballast factor has three meanings. Before LM-63-2002 it is the ballast-lamp factor.
@@ -81,8 +82,8 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         return Err(at(words.line, format_args!("{gammas} x {planes} intensities; at most {MAX_VALUES} are read")));
     }
     let kind = words.count("the photometric type", 1, 3)?;
-    if kind != 1 {
-        let message = format!("line {}: photometry of type {}; only type C is read", words.line, ["B", "A"][kind - 2]);
+    if kind == 3 {
+        let message = format!("line {}: photometry of type A; only types B and C are read", words.line);
         return Err(Error::new(ErrorKind::Unsupported, message));
     }
     let unit = if words.count("the unit", 1, 2)? == 1 { FEET } else { 1.0 };
@@ -98,13 +99,19 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     luminaire.watts = words.within("the input watts", 0.0, 1e9)?;
     luminaire.lamp_flux = if lumens > 0.0 && lumens.is_finite() { lumens * lamps } else { 0.0 };
 
-    luminaire.gammas = words.list("a vertical angle", gammas, 360.0)?;
+    let vertical = words.list("a vertical angle", gammas, 360.0)?;
     let horizontal = words.list("a horizontal angle", planes, 360.0)?;
     let factor = multiplier * ballast * lamp_factor;
     let mut candela = words.list("an intensity", gammas * planes, 1e12)?;
     candela.iter_mut().for_each(|v| *v *= factor);
     let at_end = |e: Error| e.context(format_args!("line {}", words.line));
-    (luminaire.planes, luminaire.candela) = unfold(&horizontal, &candela, gammas).map_err(at_end)?;
+    if kind == 2 {
+        (luminaire.gammas, luminaire.planes, luminaire.candela) =
+            type_b::to_type_c(&vertical, &horizontal, &candela).map_err(at_end)?;
+    } else {
+        (luminaire.planes, luminaire.candela) = unfold(&horizontal, &candela, gammas).map_err(at_end)?;
+        luminaire.gammas = vertical;
+    }
     luminaire.check().map_err(at_end)?;
     Ok(luminaire)
 }
@@ -195,6 +202,21 @@ mod tests {
         }
     }
 
+    /// A floodlight of type B: its beam points up by 30° and right by 60°, where only one intensity is not 0.
+    #[test]
+    fn type_b_becomes_type_c() {
+        let text = QUARTER.replace("3 3 1 1", "3 3 2 1").replace("0 45 90\n0 45 90", "-30 30 60\n-90 60 90");
+        let text = text.replace("100 80 0", "0 0 0").replace("100 70,0", "0 100 0").replace("100 60 0", "0 0 0");
+        let l = read(text.as_bytes()).unwrap();
+        // The direction with V = 30° and H = 60° is (sin 30° / 2, -sin 60°, cos 30° / 2).
+        let (c, gamma) = ((-(0.75f64).sqrt()).atan2(0.25).to_degrees(), (0.75f64.sqrt() / 2.0).acos().to_degrees());
+        let at = |c: f64, gamma: f64| l.intensity(c, gamma) / (1.5 * 0.9);
+        // Between the angles, the intensity falls to 0 within 30°, so it is lower by up to 8 % per step of 2.5°.
+        assert!((at(c, gamma) - 100.0).abs() < 10.0, "{}", at(c, gamma));
+        assert!(at(-c, gamma) < 20.0 && at(0.0, gamma) < 50.0 && at(0.0, 91.0) == 0.0);
+        assert_eq!(read(write(&l).unwrap().as_bytes()).unwrap(), l);
+    }
+
     /// A first angle of -0 is 0: no plane is there twice.
     #[test]
     fn a_first_angle_of_minus_zero_is_zero() {
@@ -243,7 +265,11 @@ mod tests {
         says(&QUARTER.replace("100 60 0\n", ""), "line 11: the file ends before an intensity");
         says(&QUARTER.replace("0.9 1 40", "0.9 one 40"), "line 7: the ballast-lamp factor is \"one\"");
         says(&QUARTER.replace("3 3 1 1", "3 900000000 1 1"), "line 6: the number of horizontal angles");
-        says(&QUARTER.replace("3 3 1 1", "3 3 2 1"), "type B");
+        says(&QUARTER.replace("3 3 1 1", "3 3 3 1"), "line 6: photometry of type A; only types B and C are read");
+        says(
+            &QUARTER.replace("3 3 1 1", "3 3 2 1").replacen("0 45 90", "9 45 90", 1),
+            "line 12: the vertical angles of type B",
+        );
         says(&QUARTER.replace("0 45 90\n0 45 90", "0 90 45\n0 45 90"), "vertical angles must ascend");
         says(
             &QUARTER.replace("0 45 90\n0 45 90", "0 45 90\n0 45 80"),

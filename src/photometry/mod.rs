@@ -7,8 +7,9 @@
 //! [`faces`] its triangles. [`presets`] lists requirements of EN 12464-1 for common rooms. [`false_colour`] shows
 //! luminance and illuminance by a scale of colours.
 //!
-//! Two computations are elsewhere: `render::illuminance` computes illuminance, and `render::glare` rates the glare
-//! that the luminaires of a scene cause for observers.
+//! Three computations are elsewhere: `render::illuminance` computes illuminance, `render::glare` rates the glare that
+//! the luminaires and emissive meshes of a scene cause for observers, and `render::gonio` computes the distribution of
+//! emissive meshes.
 //!
 //! Not modelled: spectra and colour rendering; maintenance; bodies of luminaires, and luminance that varies over a
 //! luminous face.
@@ -30,6 +31,7 @@ mod symmetry;
 pub mod temperature;
 mod text_lines;
 pub mod tm33;
+mod type_b;
 mod xml;
 
 pub use format::{Format, split_variant};

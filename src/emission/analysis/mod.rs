@@ -12,7 +12,7 @@ pub mod sites;
 
 use super::exemplar::Exemplar;
 use super::exemplar::roles::Role;
-use super::lattice::law::Law;
+use super::lattice::law::{self, Law};
 use super::lattice::{self, Correlated, basis, extent, neighbours, steps};
 use super::params::{Input, LawMode, Params, working_side};
 use crate::error::{Error, Result};
@@ -45,6 +45,9 @@ const MIN_LAMP_SHARE: f64 = 0.5;
 /// Two lattices or rows count as equal if their periods agree in pairs: the two periods of a pair differ by less than
 /// this share of the longer one. [judged on 20 photos]
 const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
+/// On a luminous ceiling, a law counts only if the correlation of the panes at its periods is at least this share of
+/// the highest one. It equals the share that [`lattice::find_law`] asks for. [bench photos:real]
+const MIN_PANE_CORRELATION: f32 = 0.9;
 
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -185,6 +188,10 @@ impl Analysis {
         let mut proposals = self.propose(&evidence, whole, job)?;
         proposals.iter_mut().for_each(|p| p.score = score(p.law));
         proposals.retain(|p| p.score.is_finite());
+        let own = match exemplar.is_luminous_ceiling() {
+            true => keep_correlated(own, &mut proposals, whole),
+            false => own,
+        };
         let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
 
         // Make the periods of lattices exactly parallel to the axes of the unwarped image, if the lattice then predicts
@@ -226,7 +233,7 @@ impl Analysis {
 
     /// Proposes laws. From the whole exemplar, and from each of its sharper parts, come one law with the threshold
     /// `min_regularity`, and several rows and lattices with looser thresholds. Further lattices and rows along the axes
-    /// come from the distances between lamps.
+    /// come from the distances between lamps; for the panes of a luminous ceiling, also from the autocorrelation.
     fn propose(&self, evidence: &Evidence, whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
@@ -255,7 +262,10 @@ impl Analysis {
         // Find periods along the axes: on a luminous ceiling from the distances between neighbouring panes, otherwise
         // from the steps between lamps.
         let periods = match exemplar.is_luminous_ceiling() {
-            true => neighbours::periods(&evidence.whole),
+            true => {
+                let shifts = lattice::shifts(exemplar, whole, MIN_CORRELATION, MIN_RELATIVE_CORRELATION, usize::MAX);
+                with_aligned(neighbours::periods(&evidence.whole), &shifts)
+            }
             false => steps::periods(&[&evidence.whole[..], &evidence.completed].concat()),
         };
         let lattices = neighbours::lattices(&periods).into_iter();
@@ -292,6 +302,31 @@ impl Analysis {
         (self.law, self.regularity) = (chosen.law, chosen.regularity);
         self.choice = Choice { score: chosen.score, ..Choice::only(chosen.law) };
     }
+}
+
+/// Keeps the proposals at whose periods the lights of a luminous ceiling correlate well ([`MIN_PANE_CORRELATION`]).
+/// Scores compare the centres of panes only; correlations show that panes of two widths take each other's place, or
+/// that a wide bar takes the place of a narrow one. Returns `own`, or the best proposal that is left if `own` does not
+/// correlate well.
+fn keep_correlated(own: Proposal, proposals: &mut Vec<Proposal>, whole: &Correlated) -> Proposal {
+    let correlation = |p: &Proposal| whole.at_periods(p.law).unwrap_or(0.0);
+    let highest = proposals.iter().chain([&own]).map(correlation).fold(0.0, f32::max);
+    let is_kept = |p: &Proposal| correlation(p) >= MIN_PANE_CORRELATION * highest;
+    proposals.retain(is_kept);
+    let best = proposals.iter().copied().max_by(|a, b| a.score.total_cmp(&b.score));
+    if is_kept(&own) { own } else { best.unwrap_or(own) }
+}
+
+/// Adds the shifts that are parallel to an axis to the periods along this axis.
+fn with_aligned([mut across, mut down]: [Vec<f64>; 2], shifts: &[(DVec2, f64)]) -> [Vec<f64>; 2] {
+    for shift in shifts.iter().map(|(shift, _)| law::aligned(*shift).abs()) {
+        match () {
+            () if shift.y == 0.0 => across.push(shift.x),
+            () if shift.x == 0.0 => down.push(shift.y),
+            () => {}
+        }
+    }
+    [across, down]
 }
 
 /// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. Laws without a period have

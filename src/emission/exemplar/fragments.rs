@@ -39,7 +39,7 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     let total: f64 = lamps.iter().map(|l| l.weight).sum();
 
     // Of the major kinds (those with a large share of the lamps' photo pixels), find the one with the smallest lamps.
-    let kinds = MeasuredLamp::kinds(&lamps);
+    let kinds = MeasuredLamp::kinds(&lamps, MeasuredLamp::is_like);
     let is_major = |kind: &&Vec<MeasuredLamp>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND_SHARE * total;
     let smallest = kinds.iter().filter(is_major).map(|kind| kind[0]).min_by(|a, b| {
         let area = |l: &MeasuredLamp| l.size.element_product();

@@ -14,6 +14,9 @@ pub const MAX_SIDE_DIFFERENCE: f64 = 0.2;
 /// differently. [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
+/// As [`MAX_SIDE_DIFFERENCE`], but for two panes of a luminous ceiling: windows of two widths may lie side by side.
+/// Those of `peabody_atrium_up` differ by 19 %. [bench photos:real]
+const MAX_PANE_DIFFERENCE: f64 = 0.15;
 /// A wider tolerance, for lamps that lie at one site of a lattice and are therefore probably of one kind.
 /// `MAX_SITE_DIFFERENCE`: maximum difference of a side, as a share of the longer one. `SITE_NOISE`: measurement error
 /// of each side, in photo pixels. [judged on 20 photos]
@@ -41,8 +44,8 @@ impl MeasuredLamp {
         Self { component, centre: lamp.centre, size, weight, blur }
     }
 
-    /// Groups lamps that have equal sizes apart from blur. Each group lists the lamps with most photo pixels first.
-    pub fn kinds(lamps: &[Self]) -> Vec<Vec<Self>> {
+    /// Groups lamps that `is_like` calls equal. Each group lists the lamps with most photo pixels first.
+    pub fn kinds(lamps: &[Self], is_like: fn(&Self, &Self) -> bool) -> Vec<Vec<Self>> {
         // Process lamps in the order of increasing blur, so that each lamp is compared with lamps of similar blur.
         let mut order = lamps.to_vec();
         order.sort_by(|a, b| a.blur.length().total_cmp(&b.blur.length()));
@@ -50,7 +53,7 @@ impl MeasuredLamp {
         for lamp in order {
             let nearest = kinds.iter_mut().filter_map(|kind| {
                 let last = *kind.last()?;
-                lamp.is_like(&last).then(|| ((lamp.size - last.size).length(), kind))
+                is_like(&lamp, &last).then(|| ((lamp.size - last.size).length(), kind))
             });
             match nearest.min_by(|a, b| a.0.total_cmp(&b.0)) {
                 Some((_, kind)) => kind.push(lamp),
@@ -64,8 +67,17 @@ impl MeasuredLamp {
     /// Whether two lamps may have equal sizes: each side differs by at most the share [`MAX_SIDE_DIFFERENCE`], plus an
     /// allowance for measurement error and for bloom.
     pub fn is_like(&self, other: &Self) -> bool {
+        self.is_within(MAX_SIDE_DIFFERENCE, other)
+    }
+
+    /// Like [`Self::is_like`], but for panes of a luminous ceiling ([`MAX_PANE_DIFFERENCE`]).
+    pub fn is_like_pane(&self, other: &Self) -> bool {
+        self.is_within(MAX_PANE_DIFFERENCE, other)
+    }
+
+    fn is_within(&self, share: f64, other: &Self) -> bool {
         let blur = (self.blur + other.blur) * NOISE / 2.0 + (self.blur - other.blur).abs() * BLOOM;
-        let slack = self.size.max(other.size) * MAX_SIDE_DIFFERENCE + blur;
+        let slack = self.size.max(other.size) * share + blur;
         (self.size - other.size).abs().cmple(slack).all()
     }
 

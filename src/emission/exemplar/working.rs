@@ -55,45 +55,40 @@ impl Working {
         let (width, height) = (reduce(image.width), reduce(image.height));
         let pitch = DVec2::new(image.width as f64 / width as f64, image.height as f64 / height as f64);
 
-        // Reduce nine channels together: colour (0 to 2), confidence, coverage, usable, shown, shown coverage and
-        // luminance. Pixels that are not usable count as 0 in channels 0 to 5.
-        const CHANNELS: usize = 9;
-        let mut full = Image::new(image.width, image.height, CHANNELS)?;
-        let mut brightest = 0f32;
-        for (i, pixel) in full.data.chunks_exact_mut(CHANNELS).enumerate().filter(|(i, _)| shown[*i]) {
-            pixel[6] = 1.0;
-            pixel[7] = f32::from(components.labels[i] != 0);
-            let colour = image.rgb(i % image.width, i / image.width);
-            pixel[8] = luminance(colour);
-            if !usable[i] {
-                continue;
+        // Reduce three channels at a time, because images of full size need much memory. Parts that the photo does not
+        // show count as 0, and so do pixels that are not usable, except in `seen`.
+        let reduced = |[from, to]: [f64; 2], value: &dyn Fn(usize) -> [f32; 3]| {
+            let mut full = Image::new(image.width, image.height, 3)?;
+            for (i, pixel) in full.data.chunks_exact_mut(3).enumerate().filter(|(i, _)| shown[*i]) {
+                pixel.copy_from_slice(&value(i));
             }
-            if components.labels[i] != 0 {
-                pixel[..3].copy_from_slice(&colour.to_array());
-                brightest = brightest.max(colour.max_element());
-                pixel[4] = 1.0;
-            }
-            pixel[3] = light.data[i].clamp(0.0, 1.0);
-            pixel[5] = 1.0;
-        }
-        let reduced = pyramid::resize(&full, width, height, job)?;
+            pyramid::resize(&full, width, height, job.part(from, to))
+        };
+        let pixel = |i: usize| image.rgb(i % image.width, i / image.width);
+        let is_lit = |i: usize| components.labels[i] != 0;
+        let is_source = |i: usize| shown[i] && usable[i] && is_lit(i);
+        let lit = (0..shown.len()).filter(|&i| is_source(i));
+        let brightest = lit.map(|i| pixel(i).max_element()).fold(0.0, f32::max);
         let scale = if brightest > 0.0 { 1.0 / brightest } else { 0.0 };
-        let mut colour = Image::new(width, height, 3)?;
-        for (out, pixel) in colour.data.chunks_exact_mut(3).zip(reduced.data.chunks_exact(CHANNELS)) {
-            out.iter_mut().zip(pixel).for_each(|(o, p)| *o = p * scale);
-        }
-        let channel = |c: usize| reduced.data.iter().skip(c).step_by(CHANNELS);
-        let confidence = try_collect(channel(3).copied())?;
-        let coverage = try_collect(channel(4).copied())?;
 
-        // A working pixel is usable if all of its full-size pixels are. If none is usable, work at full size.
-        let all = |c: usize| try_collect(channel(c).map(|&v| v > 1.0 - 1e-4));
-        let usable = all(5)?;
+        // The share of a pixel that is usable comes last in `light`, the share that the photo shows comes first in
+        // `seen`. A working pixel is usable if all of its full-size pixels are. If none is usable, work at full size.
+        let light = reduced([0.0, 0.3], &|i| match usable[i] {
+            true => [light.data[i].clamp(0.0, 1.0), f32::from(is_lit(i)), 1.0],
+            false => [0.0; 3],
+        })?;
+        let channel = |of: &Image, c: usize| try_collect(of.data.iter().skip(c).step_by(3).copied());
+        let all = |of: &Image, c: usize| try_collect(of.data.iter().skip(c).step_by(3).map(|&v| v > 1.0 - 1e-4));
+        let usable = all(&light, 2)?;
         if !usable.contains(&true) && side < longest {
             return Self::new(sources, longest, job);
         }
-        let (shown, shown_coverage) = (all(6)?, try_collect(channel(7).copied())?);
-        let luminance = try_collect(channel(8).copied())?;
+        let (confidence, coverage) = (channel(&light, 0)?, channel(&light, 1)?);
+        let seen = reduced([0.3, 0.6], &|i| [1.0, f32::from(is_lit(i)), luminance(pixel(i))])?;
+        let (shown_coverage, luminance) = (channel(&seen, 1)?, channel(&seen, 2)?);
+        let mut colour = reduced([0.6, 1.0], &|i| if is_source(i) { pixel(i).to_array() } else { [0.0; 3] })?;
+        colour.data.iter_mut().for_each(|v| *v *= scale);
+        let shown = all(&seen, 0)?;
         Ok(Self { width, height, pitch, colour, confidence, coverage, usable, shown, shown_coverage, luminance })
     }
 

@@ -63,7 +63,8 @@ impl Designs {
             kind.iter().filter_map(|lamp| Member::new(lamp, exemplar, outlines)).collect::<Vec<_>>()
         };
         let lamps = exemplar.measured_lamps(Role::is_whole);
-        let mut kinds: Vec<Vec<Member>> = MeasuredLamp::kinds(&lamps).iter().map(members).collect();
+        let is_like = if exemplar.is_luminous_ceiling() { MeasuredLamp::is_like_pane } else { MeasuredLamp::is_like };
+        let mut kinds: Vec<Vec<Member>> = MeasuredLamp::kinds(&lamps, is_like).iter().map(members).collect();
         let protruding = if exemplar.is_luminous_ceiling() { Vec::new() } else { discs::take_protruding(&mut kinds) };
         protruding.iter().for_each(|kind| designs.add(kind, discs::diameter(&judges(kind)).map(disc)));
         kinds.iter().for_each(|kind| designs.add(kind, fit(kind)));

@@ -61,12 +61,12 @@ pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f3
 }
 
 /// A row with the given period. The second period leads across the row, along x or y. It is the extent of the exemplar,
-/// or longer if lamps lie at opposite borders, so that these lamps do not touch where copies of the exemplar adjoin.
-/// Panes are kept apart by the widest bar ([`extent::of_panes`]), other lamps by the shortest gap
-/// ([`extent::of_rows`]).
+/// or longer if lamps lie at opposite borders, so that these lamps do not touch where copies of the exemplar adjoin
+/// ([`extent::of_rows`]). On a luminous ceiling, it is the extent of the panes plus the widest bar, without the dark
+/// border around the panes ([`extent::of_panes`]).
 pub fn row(exemplar: &Exemplar, period: DVec2) -> Law {
     let extent = match exemplar.is_luminous_ceiling() {
-        true => extent::of(exemplar).max(extent::of_panes(exemplar)),
+        true => extent::of_panes(exemplar),
         false => extent::of_rows(exemplar),
     };
     let across = if period.x.abs() > period.y.abs() { DVec2::Y * extent } else { DVec2::X * extent };
@@ -90,6 +90,8 @@ pub struct Correlated {
     height: usize,
     /// Number of valid pixels of the reduced image.
     valid: usize,
+    /// Minimum number of pixels that must overlap at a shift.
+    min_overlap: f32,
     /// Unwarped pixels per pixel of the reduced image.
     to_unwarped: DVec2,
 }
@@ -111,7 +113,25 @@ impl Correlated {
         let values: Vec<f32> = mask.data.chunks_exact(2).map(|p| if p[1] > 0.5 { p[0] / p[1] } else { 0.0 }).collect();
         let correlation = Autocorrelation::new(&values, &valid, width, height, job.part(0.2, 1.0))?;
         let to_unwarped = DVec2::new(exemplar.width as f64 / width as f64, exemplar.height as f64 / height as f64);
-        Ok(Self { correlation, width, height, valid: valid.iter().filter(|&&v| v).count(), to_unwarped })
+        let valid = valid.iter().filter(|&&v| v).count();
+        Ok(Self { correlation, width, height, valid, min_overlap: MIN_OVERLAP * valid as f32, to_unwarped })
+    }
+
+    /// The lowest correlation at a period of a lattice or a row. `None` for other laws, and if too few pixels overlap.
+    pub fn at_periods(&self, law: Law) -> Option<f32> {
+        match law {
+            Law::Lattice([a, b]) => Some(self.at(a)?.min(self.at(b)?)),
+            Law::Row([period, _]) => self.at(period),
+            Law::Copy | Law::Whole(_) | Law::Free => None,
+        }
+    }
+
+    /// The correlation at a shift, given in unwarped pixels: the highest one of the four shifts by whole pixels of the
+    /// reduced image that are next to it. `None` if too few pixels overlap.
+    fn at(&self, shift: DVec2) -> Option<f32> {
+        let [x, y] = (shift / self.to_unwarped).floor().to_array().map(|v| v as isize);
+        let next = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].into_iter();
+        next.filter_map(|(x, y)| self.correlation.at(x, y, self.min_overlap)).reduce(f32::max)
     }
 }
 
@@ -149,8 +169,7 @@ pub fn shifts(
     relative: f32,
     max_count: usize,
 ) -> Vec<(DVec2, f64)> {
-    let &Correlated { ref correlation, width, height, valid, to_unwarped } = correlated;
-    let overlap = MIN_OVERLAP * valid as f32;
+    let &Correlated { ref correlation, width, height, valid, min_overlap: overlap, to_unwarped } = correlated;
     let unchanging: Vec<DVec2> =
         [DVec2::X, DVec2::Y].into_iter().filter(|&axis| repeats::is_unchanging(correlation, axis, overlap)).collect();
     let mut found = repeats::peaks(correlation, (width, height), (overlap, min_value), unchanging.first().copied());
