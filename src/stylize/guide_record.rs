@@ -52,11 +52,6 @@ impl GuideRecord {
         Ok(Self { size, patches, light, weights: lights.iter().map(weight).collect(), data, normals_weight })
     }
 
-    pub(super) fn try_clone(&self) -> Result<Self> {
-        let copy = |list: &[u8]| try_collect(list.iter().copied());
-        Ok(Self { light: copy(&self.light)?, data: copy(&self.data)?, weights: self.weights.clone(), ..*self })
-    }
-
     /// Whether this is the record of a frame, not the default.
     pub(super) fn is_of_frame(&self) -> bool {
         self.size != [0, 0]

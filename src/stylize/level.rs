@@ -28,7 +28,7 @@ pub(super) struct Problem {
     pub known: Option<Image>,
     /// Number of non-finite pixels in the exemplar (`.0`) and in the target (`.1`).
     pub broken: (usize, usize),
-    /// The target's guides for the next frame of a sequence; `None` on coarse levels.
+    /// The target's guides for the next frame of a sequence. A run takes them; `None` afterwards, and on coarse levels.
     pub guide_record: Option<GuideRecord>,
     /// Samples of the guides of light; `None` on coarse levels, and if no guide of light has a weight above 0.
     pub light: Option<LightSamples>,

@@ -86,8 +86,9 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
 /// Stylises the target and publishes an intermediate result after each level except the finest.
 pub fn run_and_publish(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
     params.check()?;
-    let problem = level::Problem::new(input, params, job.part(0.0, 0.03))?;
-    let output = multires::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
+    let mut problem = level::Problem::new(input, params, job.part(0.0, 0.03))?;
+    let guide_record = problem.guide_record.take();
+    let output = multires::run(&problem, guide_record, input, params, publish, job.part(0.03, 1.0))?;
     job.report(1.0);
     Ok(output)
 }

@@ -46,7 +46,15 @@ struct State {
     guide_record: Option<GuideRecord>,
 }
 
-pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Publish, job: Job) -> Result<Output> {
+/// Runs all levels. `guide_record` becomes the record of the output; `None` if no later frame needs it.
+pub(super) fn run(
+    problem: &Problem,
+    mut guide_record: Option<GuideRecord>,
+    input: &Input,
+    params: &Params,
+    publish: Publish,
+    job: Job,
+) -> Result<Output> {
     let halved = usize::from(!problem.is_of(input.artwork));
     let moved = match (input.previous, input.motion) {
         (Some(before), Some(motion)) => Some(moved(&checked_size(before, problem)?, motion, problem, halved, job)?),
@@ -79,7 +87,8 @@ pub(super) fn run(problem: &Problem, input: &Input, params: &Params, publish: Pu
         let problem = popped.as_ref().unwrap_or(problem);
         let seed = hash(params.seed, &[l as u64]);
         let mut level = quantise(problem, params, l, seed, job.part(0.0, 0.01))?;
-        let mut state = initialise(&mut level, field.take(), &setup, l, job)?;
+        let guide_record = if l == 0 { guide_record.take() } else { None };
+        let mut state = initialise(&mut level, field.take(), guide_record, &setup, l, job)?;
         reports.push(iterate(&mut level, &mut state, params, l, job)?);
         if l == 0 {
             return output(level, state, reports, &setup, job);
@@ -106,7 +115,14 @@ fn quantise<'a>(problem: &'a Problem, params: &Params, l: usize, seed: u64, job:
 
 /// Returns the initial state of level `l`. The field comes from the next coarser level or from an earlier result, else
 /// from a search by the guides alone.
-fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, job: Job) -> Result<State> {
+fn initialise(
+    level: &mut Level,
+    field: Option<Field>,
+    mut guide_record: Option<GuideRecord>,
+    setup: &Setup,
+    l: usize,
+    job: Job,
+) -> Result<State> {
     let (problem, params) = (level.problem, setup.params);
     // Start from the given field, or find a field by the guides alone.
     let (width, height) = (level.wanted.width, level.wanted.height);
@@ -116,7 +132,6 @@ fn initialise(level: &mut Level, field: Option<Field>, setup: &Setup, l: usize, 
         None => by_guides_alone(problem, params, level.seed, job.part(0.0, 0.1))?,
     };
     // Keep the matches of the previous frame where they fit.
-    let mut guide_record = problem.guide_record.as_ref().map(GuideRecord::try_clone).transpose()?;
     let kept = match &setup.moved {
         Some(moved) if l == 0 => {
             let from = try_collect(moved.from.iter().copied())?;
@@ -214,7 +229,7 @@ fn rematch(
 /// Decodes the picture of the finest level and completes the report.
 fn output(level: Level, state: State, levels: Vec<LevelReport>, setup: &Setup, job: Job) -> Result<Output> {
     let State { field, picture, guide_record, .. } = state;
-    // Only pilot runs at reduced resolution have no record: no later frame is compared with them.
+    // Only pilot runs have no record: no later frame is compared with them.
     let guide_record = guide_record.unwrap_or_default();
     let problem = level.problem;
     let usage = Usage::of(&field, &level)?;

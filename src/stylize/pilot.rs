@@ -67,7 +67,9 @@ impl<'a> PilotRuns<'a> {
 
         // Form the problem and all its halves down to the lowest resolution used.
         let start = clock();
-        let mut problems = vec![Problem::new(&input, &ladder[usual], job.part(0.0, 0.05))?];
+        let mut problem = Problem::new(&input, &ladder[usual], job.part(0.0, 0.05))?;
+        problem.guide_record = None;
+        let mut problems = vec![problem];
         let preparing = clock().saturating_sub(start).as_secs_f64();
         while let Some(last) = problems.last()
             && problems.iter().filter(|p| is_near(p)).count() < RESOLUTIONS
@@ -101,7 +103,7 @@ impl<'a> PilotRuns<'a> {
 
     fn run(&self, at: usize, settings: usize, job: Job) -> Result<Prediction> {
         let start = (self.clock)();
-        let report = multires::run(&self.problems[at], &self.input, &self.ladder[settings], &|_| (), job)?.report;
+        let report = multires::run(&self.problems[at], None, &self.input, &self.ladder[settings], &|_| (), job)?.report;
         let energy = report.levels.last().and_then(|l| l.energy.last()).copied().unwrap_or(0.0);
         Ok(Prediction { seconds: (self.clock)().saturating_sub(start).as_secs_f64(), energy })
     }

@@ -43,8 +43,9 @@ impl Updater {
     /// Stylises the target once, like [`super::run`].
     pub fn new(input: &Input, params: &Params, publish: Publish, job: Job) -> Result<(Self, Output)> {
         params.check()?;
-        let problem = Problem::new(input, params, job.part(0.0, 0.03))?;
-        let output = multires::run(&problem, input, params, publish, job.part(0.03, 1.0))?;
+        let mut problem = Problem::new(input, params, job.part(0.0, 0.03))?;
+        let guide_record = problem.guide_record.take();
+        let output = multires::run(&problem, guide_record, input, params, publish, job.part(0.03, 1.0))?;
         let mut display = input.artwork.try_clone()?;
         encode(&mut display, job)?;
         let mut picture = output.image.try_clone()?;
