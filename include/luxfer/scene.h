@@ -600,7 +600,7 @@ typedef struct luxfer_distribution_report {
 /** GLDF container (.gldf): a product with variants, of which one is read. */
 #define LUXFER_DISTRIBUTION_GLDF 3
 
-/** Any of these formats, told by the content of the file. */
+/** Any of these formats: the content of the file decides which. */
 #define LUXFER_DISTRIBUTION_ANY 4
 
 /**
@@ -609,7 +609,7 @@ typedef struct luxfer_distribution_report {
  * id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
  * releases *distribution. Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
- * LUXFER_UNSUPPORTED for photometry of types A and B, and for files whose photometry is elsewhere or is not luminous;
+ * LUXFER_UNSUPPORTED for photometry of type A, and of type B in TM-33 files, and if it is elsewhere or not luminous;
  * LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
  * extension.
  */

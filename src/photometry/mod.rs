@@ -7,9 +7,8 @@
 //! [`faces`] its triangles. [`presets`] lists requirements of EN 12464-1 for common rooms. [`false_colour`] shows
 //! luminance and illuminance by a scale of colours.
 //!
-//! Three computations are elsewhere: `render::illuminance` computes illuminance, `render::glare` rates the glare that
-//! the luminaires and emissive meshes of a scene cause for observers, and `render::gonio` computes the distribution of
-//! emissive meshes.
+//! Two computations are elsewhere: `render::illuminance` computes illuminance, and `render::glare` rates the glare
+//! that the luminaires of a scene cause for observers.
 //!
 //! Not modelled: spectra and colour rendering; maintenance; bodies of luminaires, and luminance that varies over a
 //! luminous face.

@@ -184,7 +184,7 @@ class DistributionFormat(IntEnum):
     GLDF = 3
     """GLDF container (.gldf): a product with variants, of which one is read."""
     ANY = 4
-    """Any of these formats, told by the content of the file."""
+    """Any of these formats: the content of the file decides which."""
 
 
 class LightKind(IntEnum):
