@@ -832,8 +832,8 @@ typedef int32_t (*luxfer_progress_fn)(void *user, double fraction);
  *
  * *outcome receives the status of the work: LUXFER_OK if the job has succeeded, LUXFER_CANCELLED if a cancel request
  * came in time, LUXFER_NOT_READY if the job still runs, and otherwise the error with which the job has ended. For an
- * error, luxfer_context_get_last_error then gives the message of the job. The call itself returns LUXFER_OK whatever
- * the outcome. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other job
+ * error, luxfer_context_get_last_error then gives the message of the job. The call itself returns LUXFER_OK for every
+ * outcome. If the function of another job (luxfer_job_start) waits for this job, a cancel request to the other job
  * also cancels this job.
  * LUXFER_INVALID_ARGUMENT if outcome is NULL; LUXFER_INVALID_OPERATION if the function of a job waits for its own job.
  */

@@ -119,7 +119,7 @@ luxfer_status luxfer_plan_get_report(luxfer_plan *plan,
                                      size_t size);
 
 /**
- * Gets the settings to render with: the settings given at the start, except those that affect quality, which the plan
+ * Gets the settings to render with: the settings given at the start, except the settings of quality, which the plan
  * has chosen. size is sizeof *params. Any thread.
  *
  * If the goal is an error, rendering stops when it reaches the error; if few paths suffice, the plan sets a fixed
@@ -133,7 +133,7 @@ luxfer_status luxfer_plan_get_render_params(luxfer_plan *plan,
                                             size_t size);
 
 /**
- * Gets the settings to relight with: the settings given at the start, except those that affect quality, which the
+ * Gets the settings to relight with: the settings given at the start, except the settings of quality, which the
  * plan has chosen. size is sizeof *params. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_NOT_FOUND unless the plan is of a transfer.
  */

@@ -588,7 +588,7 @@ typedef struct luxfer_distribution_report {
     uint32_t emitters;
 } luxfer_distribution_report;
 
-/** IES LM-63 (.ies), with type C photometry. */
+/** IES LM-63 (.ies), with photometry of type C, or of type B when read. */
 #define LUXFER_DISTRIBUTION_IES 0
 
 /** EULUMDAT (.ldt). */
@@ -609,7 +609,7 @@ typedef struct luxfer_distribution_report {
  * id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
  * releases *distribution. Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
- * LUXFER_UNSUPPORTED for photometry of type A, and of type B in TM-33 files, and if it is elsewhere or not luminous;
+ * LUXFER_UNSUPPORTED for photometry of type A, of type B in TM-33 files, in another file, or of no luminous quantity;
  * LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
  * extension.
  */

@@ -84,12 +84,12 @@ fn likelihood(log_metres: f64, sides: [f64; 2]) -> f64 {
     if !sides.iter().all(|side| side.is_finite() && *side > 0.0) {
         return any;
     }
-    let density = |[long, short, weight]: &[f64; 3]| {
+    let pdf = |[long, short, weight]: &[f64; 3]| {
         let off =
             [(sides[0], long), (sides[1], short)].map(|(side, usual)| log_metres + side.ln() - (SHINES * usual).ln());
         weight * normal(off[0], SIDE_ERROR) * normal(off[1], SIDE_ERROR)
     };
-    any + SIZES.iter().map(density).sum::<f64>()
+    any + SIZES.iter().map(pdf).sum::<f64>()
 }
 
 fn normal(x: f64, deviation: f64) -> f64 {

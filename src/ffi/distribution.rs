@@ -24,7 +24,7 @@ pub struct luxfer_distribution {
 
 /// A file format of distributions: a LUXFER_DISTRIBUTION_ value.
 pub type luxfer_distribution_format = i32;
-/// IES LM-63 (.ies), with type C photometry.
+/// IES LM-63 (.ies), with photometry of type C, or of type B when read.
 pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
 /// EULUMDAT (.ldt).
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
@@ -135,7 +135,7 @@ impl Distribution {
 /// id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
 /// releases *distribution. Any thread.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
-/// LUXFER_UNSUPPORTED for photometry of type A, and of type B in TM-33 files, and if it is elsewhere or not luminous;
+/// LUXFER_UNSUPPORTED for photometry of type A, of type B in TM-33 files, in another file, or of no luminous quantity;
 /// LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
 /// extension.
 #[unsafe(no_mangle)]

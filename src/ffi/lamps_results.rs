@@ -9,7 +9,7 @@ use super::image::{Pixels, luxfer_image};
 use super::lamps::luxfer_lamps;
 use super::params::{Report, Versioned, versioned};
 use super::pointer::{Out, copy_text};
-use super::relight::{luxfer_outcome, reach_value};
+use super::relight::{luxfer_outcome, outcome_value};
 use super::scene::missing;
 use super::status::luxfer_status;
 use crate::error::{Error, ErrorKind};
@@ -190,7 +190,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_goal(
         let is_incident = o.quantities[i] == Quantity::Incident;
         let lux = |radiance: DVec3| if is_incident { PI * f64::from(luminance(radiance.as_vec3())) } else { 0.0 };
         out.set(luxfer_lamps_goal {
-            outcome: outcome.status.map(reach_value),
+            outcome: outcome.status.map(outcome_value),
             target: target.to_array(),
             achieved: outcome.achieved.to_array(),
             half_width: outcome.half_width.to_array(),

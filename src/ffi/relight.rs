@@ -191,7 +191,7 @@ fn constraint(value: luxfer_constraint) -> Result<Constraint> {
     }
 }
 
-pub(super) fn reach_value(status: TargetStatus) -> luxfer_outcome {
+pub(super) fn outcome_value(status: TargetStatus) -> luxfer_outcome {
     match status {
         TargetStatus::Met => LUXFER_OUTCOME_MET,
         TargetStatus::TooBright => LUXFER_OUTCOME_TOO_BRIGHT,
@@ -208,7 +208,7 @@ impl luxfer_relight_report {
             half_width: solution.half_width.to_array(),
             response: solution.response.to_array(),
             background: solution.background.to_array(),
-            outcome: solution.status.map(reach_value),
+            outcome: solution.status.map(outcome_value),
             error: solution.error(),
             delta_e: solution.delta_e,
             ..Self::defaults()

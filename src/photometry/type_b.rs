@@ -2,9 +2,9 @@
 //!
 //! The polar axis of type B lies across the beam. The vertical angle V turns about this axis; the horizontal angle H is
 //! the angle between the direction and the plane across the axis. The beam's direction, V = H = 0, becomes γ = 0. As
-//! seen from behind the floodlight, V goes up and H to the right; "up" becomes C = 0, and so "right" becomes C = 270,
-//! as in Radiance. A direction with the components x, y and z along C = 0, along C = 90 and along the beam has
-//! `V = atan2(x, z)` and `H = -asin(y)`.
+//! seen from behind the floodlight, V goes up and H to the right; "up" becomes C = 0, and so "right" becomes C = 270;
+//! Radiance has the same axes. A direction with the components x, y and z along C = 0, along C = 90 and along the beam
+//! has `V = atan2(x, z)` and `H = -asin(y)`.
 //!
 //! Intensities are interpolated linearly in V and H, and 0 outside the measured angles.
 
@@ -25,26 +25,30 @@ pub type TypeC = (Vec<f64>, Vec<f64>, Vec<f64>);
 /// Angles are in degrees. If a list of angles starts at 0, the distribution is symmetric about 0.
 ///
 /// # Errors
-/// `Format` if angles do not ascend or are out of range.
+/// `Format` if angles do not ascend or are out of range, or if an intensity is negative.
 pub fn to_type_c(vertical: &[f64], horizontal: &[f64], candela: &[f64]) -> Result<TypeC> {
     check(vertical, "vertical", 180.0)?;
     check(horizontal, "horizontal", 90.0)?;
+    // Interpolation would hide a negative intensity beside larger ones.
+    if let Some(negative) = candela.iter().find(|v| **v < 0.0) {
+        return Err(Error::format(format!("an intensity is {negative}; it must be at least 0")));
+    }
     let [low, high] = STEPS;
     let gap = |angles: &[f64]| angles.windows(2).map(|w| w[1] - w[0]).fold(high, f64::min);
     let step = gap(vertical).min(gap(horizontal)).max(low);
     let quarter = (90.0 / step).ceil();
-    let step = 90.0 / quarter;
+    let at = |i: usize| 90.0 * i as f64 / quarter;
     let is_behind = vertical.iter().any(|v| v.abs() > 90.0);
     let count = quarter as usize * if is_behind { 2 } else { 1 };
 
     // The angles of the file are among the angles γ, because narrow beams are measured in small steps.
-    let end = step * count as f64;
+    let end = at(count);
     let own = vertical.iter().chain(horizontal).map(|a| a.abs()).filter(|a| *a < end - MIN_GAP);
-    let mut gammas: Vec<f64> = (0..count).map(|i| i as f64 * step).chain(own).collect();
+    let mut gammas: Vec<f64> = (0..count).map(at).chain(own).collect();
     gammas.sort_by(f64::total_cmp);
     gammas.dedup_by(|next, kept| *next - *kept < MIN_GAP);
     gammas.push(end);
-    let planes: Vec<f64> = (0..4 * quarter as usize).map(|i| i as f64 * step).collect();
+    let planes: Vec<f64> = (0..4 * quarter as usize).map(at).collect();
 
     let mut values = try_vec(gammas.len() * planes.len(), 0.0)?;
     for (row, c) in values.chunks_exact_mut(gammas.len()).zip(&planes) {
@@ -207,6 +211,23 @@ mod tests {
         let narrow: Vec<f64> = (0..1024).map(|i| f64::from(i) / 1023.0 * 1e-3).collect();
         let (gammas, planes, candela) = to_type_c(&fine, &narrow, &vec![1.0; 4096 * 1024]).unwrap();
         assert!(gammas.len() * planes.len() == candela.len() && candela.len() < 1 << 21);
-        assert!(gammas.windows(2).all(|w| w[1] - w[0] >= MIN_GAP / 2.0));
+        assert!(gammas.windows(2).all(|w| w[1] - w[0] >= MIN_GAP - 1e-9));
+    }
+
+    #[test]
+    fn the_angles_end_exactly_for_every_step() {
+        for quarter in 36..=180 {
+            let vertical = [-180.0, 0.0, 90.0 / f64::from(quarter), 180.0];
+            let (gammas, planes, candela) = to_type_c(&vertical, &[-90.0, 0.0, 90.0], &[1.0; 12]).unwrap();
+            assert_eq!(gammas[gammas.len() - 1], 180.0, "{quarter}");
+            assert!(candela.iter().all(|v| (v - 1.0).abs() < 1e-9), "{quarter}");
+            Luminaire { gammas, planes, candela, ..Luminaire::lambertian("", 0.0, [0.0; 3]) }.check().unwrap();
+        }
+    }
+
+    #[test]
+    fn negative_intensities_are_refused() {
+        let error = to_type_c(&[-90.0, 0.0, 90.0], &[0.0, 90.0], &[100.0, 100.0, 100.0, 100.0, -5.0, 100.0]);
+        assert!(error.unwrap_err().message.contains("an intensity is -5"));
     }
 }

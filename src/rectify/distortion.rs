@@ -43,7 +43,7 @@ const UNDONE_ERRORS: f64 = 2.0;
 
 impl Distortion {
     /// Whether the distortion is of the kind and size that wide-angle lenses have, and unlikely to be 0.
-    pub fn is_worth_undoing(&self) -> bool {
+    pub fn should_undo(&self) -> bool {
         let barrel = -self.corner;
         barrel >= MIN_UNDONE.max(UNDONE_ERRORS * self.error) && barrel <= MAX_UNDONE
     }
@@ -147,9 +147,9 @@ fn trace(gradients: &Gradients, segment: &Segment) -> Option<Edge> {
     let steps = (length - 2.0 * TRIM) as usize;
     // Determine the polarity of the edge from the sum of the gradients along the segment.
     let direction = (segment.b - segment.a) / length;
-    let sense: f64 =
+    let polarity: f64 =
         (0..steps).map(|i| slope(gradients, segment.a + direction * (TRIM + i as f64), direction.perp())).sum();
-    let (a, b) = if sense < 0.0 { (segment.b, segment.a) } else { (segment.a, segment.b) };
+    let (a, b) = if polarity < 0.0 { (segment.b, segment.a) } else { (segment.a, segment.b) };
     let along = (b - a) / length;
     let across = along.perp();
     let profile = |t: f64| (-SEARCH_WIDTH..=SEARCH_WIDTH).map(move |o| a + along * t + across * f64::from(o));

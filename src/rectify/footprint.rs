@@ -108,7 +108,7 @@ fn locate_through(
         let (c, d) = (part(map[1] - qy * map[2]), part(map[4] - qy * map[5]));
         let ((a, b), (c, d)) = match lens {
             None => ((a, b), (c, d)),
-            Some(lens) => bent(lens, shown(qx, qy), [a, b, c, d]),
+            Some(lens) => through_lens(lens, shown(qx, qy), [a, b, c, d]),
         };
         let (xx, xy, yy, determinant) = (a * a + b * b, a * c + b * d, c * c + d * d, a * d - b * c);
         let half = 0.5 * (xx - yy);
@@ -139,7 +139,7 @@ fn locate_through(
 /// Returns the rows of the Jacobian after the lens: `[a, b, c, d]` are those of the map to the pixels of an ideal lens,
 /// and `at` is the pixel of the source.
 #[inline(always)]
-fn bent(lens: &Radial, at: (f64, f64), [a, b, c, d]: [f32; 4]) -> ((f32, f32), (f32, f32)) {
+fn through_lens(lens: &Radial, at: (f64, f64), [a, b, c, d]: [f32; 4]) -> ((f32, f32), (f32, f32)) {
     let inverse = lens.derivative(DVec2::new(at.0, at.1)).inverse().as_mat2();
     let (x, y) = (inverse.x_axis, inverse.y_axis);
     let limit = |v: f32| v.max(-MAX_DERIVATIVE).min(MAX_DERIVATIVE);

@@ -132,7 +132,7 @@ pub fn find_view(photo: &Image, params: &Params, job: Job) -> Result<View> {
     let size = [photo.width, photo.height];
     let given = given_lens(size, params)?;
     let job = job.part(0.7, 1.0);
-    let view = match distortion.filter(|d| params.distortion.is_none() && d.is_worth_undoing()) {
+    let view = match distortion.filter(|d| params.distortion.is_none() && d.should_undo()) {
         None => view_through(&given, &segments, size, params, job)?,
         Some(found) => {
             let plain = view_through(&given, &segments, size, params, job.part(0.0, 0.5))?;

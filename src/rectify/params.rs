@@ -54,7 +54,7 @@ pub struct Params {
     pub principal: Option<DVec2>,
     /// Radial distortion of the lens that is undone, as [`Distortion::corner`](super::Distortion::corner), in
     /// `[-1, 0.2]`; 0 undoes none. If absent, the distortion is measured, and undone if it is
-    /// [worth undoing](super::Distortion::is_worth_undoing) and the lines then meet better in vanishing points.
+    /// [worth undoing](super::Distortion::should_undo) and the lines then meet better in vanishing points.
     pub distortion: Option<f64>,
     pub seed: u64,
 }

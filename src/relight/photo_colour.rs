@@ -35,7 +35,7 @@ const HALO: f32 = 0.01;
 const WHITE: f32 = 1.001;
 /// If a channel's value is unknown in more than this share of the pixels, the target of this channel is a lower bound.
 /// [convention]
-const MOSTLY: f64 = 0.5;
+const MAX_UNKNOWN_SHARE: f64 = 0.5;
 
 /// Computes the mean colour of the part of the photo that `which` chooses. `plane` and `lights` are masks of the photo.
 ///
@@ -82,8 +82,9 @@ fn mean_where(which: TargetColour, photo: &Image, selected: impl Fn(usize) -> bo
             .then(|| PhotoColour { colour: (sum / count).as_vec3(), constraint: [Constraint::Exactly; 3] });
     }
     let (mean, unknown) = clipping::mean(pixels, which == TargetColour::Surface)?;
-    let constraint =
-        unknown.to_array().map(|share| if share > MOSTLY { Constraint::AtLeast } else { Constraint::Exactly });
+    let constraint = unknown
+        .to_array()
+        .map(|share| if share > MAX_UNKNOWN_SHARE { Constraint::AtLeast } else { Constraint::Exactly });
     Some(PhotoColour { colour: mean.as_vec3(), constraint })
 }
 

@@ -176,7 +176,7 @@ class DistributionFormat(IntEnum):
     """A file format of distributions."""
 
     IES = 0
-    """IES LM-63 (.ies), with type C photometry."""
+    """IES LM-63 (.ies), with photometry of type C, or of type B when read."""
     LDT = 1
     """EULUMDAT (.ldt)."""
     TM33 = 2

@@ -188,11 +188,12 @@ impl Analysis {
         let mut proposals = self.propose(&evidence, whole, job)?;
         proposals.iter_mut().for_each(|p| p.score = score(p.law));
         proposals.retain(|p| p.score.is_finite());
+        let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
         let own = match exemplar.is_luminous_ceiling() {
-            true => keep_correlated(own, &mut proposals, whole),
+            true if keep_correlated(own, &mut proposals, whole) => own,
+            true => best_of(&proposals).filter(|p| p.score > SCORE_WITHOUT_PERIOD).unwrap_or(without_period),
             false => own,
         };
-        let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
 
         // Make the periods of lattices exactly parallel to the axes of the unwarped image, if the lattice then predicts
         // the lamps nearly as well.
@@ -204,8 +205,7 @@ impl Analysis {
         // the score of a law without a period.
         let rank = |p: &Proposal| p.rank(exemplar);
         let best = proposals.iter().fold(own, |best, p| if rank(p) > rank(&best) + 1e-9 { *p } else { best });
-        let lattices = proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_)));
-        let lattice = lattices.copied().max_by(|a, b| a.score.total_cmp(&b.score));
+        let lattice = best_of(proposals.iter().filter(|p| matches!(p.law, Law::Lattice(_))));
         // For the panes of a luminous ceiling, prefer the best lattice if two conditions hold. The lattice scores
         // clearly higher than a law without a period, and no other law scores clearly higher than the lattice.
         let panes = lattice.filter(|p| {
@@ -290,8 +290,7 @@ impl Analysis {
         let mut proposals = self.propose(&evidence, whole, job)?;
         proposals.retain(|p| is_asked(&p.law));
         proposals.iter_mut().for_each(|p| p.score = score(&self.exemplar, &evidence, p.law));
-        let best = proposals.into_iter().filter(|p| p.score.is_finite()).max_by(|a, b| a.score.total_cmp(&b.score));
-        let best = best.ok_or_else(|| {
+        let best = best_of(proposals.iter().filter(|p| p.score.is_finite())).ok_or_else(|| {
             Error::degenerate("emission.law asks for a period that the lights do not show: set it to the best law")
         })?;
         self.set(best);
@@ -306,27 +305,35 @@ impl Analysis {
 
 /// Keeps the proposals at whose periods the lights of a luminous ceiling correlate well ([`MIN_PANE_CORRELATION`]).
 /// Scores compare the centres of panes only; correlations show that panes of two widths take each other's place, or
-/// that a wide bar takes the place of a narrow one. Returns `own`, or the best proposal that is left if `own` does not
-/// correlate well.
-fn keep_correlated(own: Proposal, proposals: &mut Vec<Proposal>, whole: &Correlated) -> Proposal {
+/// that a wide bar takes the place of a narrow one. Returns whether `own` may stay: it correlates well, or has no
+/// period.
+fn keep_correlated(own: Proposal, proposals: &mut Vec<Proposal>, whole: &Correlated) -> bool {
     let correlation = |p: &Proposal| whole.at_periods(p.law).unwrap_or(0.0);
     let highest = proposals.iter().chain([&own]).map(correlation).fold(0.0, f32::max);
     let is_kept = |p: &Proposal| correlation(p) >= MIN_PANE_CORRELATION * highest;
     proposals.retain(is_kept);
-    let best = proposals.iter().copied().max_by(|a, b| a.score.total_cmp(&b.score));
-    if is_kept(&own) { own } else { best.unwrap_or(own) }
+    matches!(own.law, Law::Whole(_) | Law::Free) || is_kept(&own)
 }
 
-/// Adds the shifts that are parallel to an axis to the periods along this axis.
-fn with_aligned([mut across, mut down]: [Vec<f64>; 2], shifts: &[(DVec2, f64)]) -> [Vec<f64>; 2] {
-    for shift in shifts.iter().map(|(shift, _)| law::aligned(*shift).abs()) {
-        match () {
-            () if shift.y == 0.0 => across.push(shift.x),
-            () if shift.x == 0.0 => down.push(shift.y),
-            () => {}
+/// The proposal with the highest score.
+fn best_of<'a>(proposals: impl IntoIterator<Item = &'a Proposal>) -> Option<Proposal> {
+    proposals.into_iter().copied().max_by(|a, b| a.score.total_cmp(&b.score))
+}
+
+/// Adds the shifts that are parallel to an axis to the periods along this axis: the [`MAX_SHIFTS`] shortest ones that
+/// differ from the periods so far ([`MAX_PERIOD_DIFFERENCE`]).
+fn with_aligned(mut periods: [Vec<f64>; 2], shifts: &[(DVec2, f64)]) -> [Vec<f64>; 2] {
+    for (axis, periods) in periods.iter_mut().enumerate() {
+        let max_count = periods.len() + MAX_SHIFTS;
+        let shifts = shifts.iter().map(|(shift, _)| law::aligned(*shift).abs());
+        for length in shifts.filter(|shift| shift[1 - axis] == 0.0).map(|shift| shift[axis]) {
+            let is_listed = |p: &f64| (p - length).abs() < MAX_PERIOD_DIFFERENCE * length;
+            if periods.len() < max_count && !periods.iter().any(is_listed) {
+                periods.push(length);
+            }
         }
     }
-    [across, down]
+    periods
 }
 
 /// Score of a law: how well it predicts the whole lamps and the visible parts of cut lamps. Laws without a period have

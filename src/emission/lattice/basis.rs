@@ -9,8 +9,8 @@ const MAX_LAMPS: usize = 400;
 /// A pair of lamps takes part in the fit if the vector between them differs from a lattice vector by less than this
 /// share of the first period's length. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
-/// The passes of the fit use pairs whose vector has at most this number of lattice steps along either basis vector.
-/// Steps are whole numbers; a limit halfway between two of them is not affected by rounding. [rounding]
+/// Maximum number of lattice steps between the two lamps of a pair, along either basis vector, for each of the three
+/// passes of the fit. Step counts are whole, so rounding does not affect limits halfway between two counts. [rounding]
 const MAX_STEPS: [f64; 3] = [1.5, 3.5, f64::INFINITY];
 /// If the pattern does not change along an axis, the search for lattices returns a shift of one pixel along the axis in
 /// place of a period. A basis vector that is at most this long, in unwarped pixels, is such a shift. [rounding]

@@ -26,7 +26,7 @@ pub enum Law {
     /// The lights form a lattice with two periods.
     Lattice([DVec2; 2]),
     /// The lights form a row. The first vector is the period along the row. The second vector leads across the row; its
-    /// length is the extent of the exemplar, or more ([`super::row`]).
+    /// length follows from the extent of the exemplar or of its panes ([`super::row`]).
     Row([DVec2; 2]),
     /// There are too few lights for a period. The exemplar repeats as a whole; both periods follow from its extent.
     Whole([DVec2; 2]),

@@ -5,7 +5,7 @@
 //! does not hide a period: if a tenth of the lamps is missing, the correlation falls by about a tenth. The synthesis
 //! then shifts patches by lattice vectors only.
 //!
-//! - If there is only one such shift, the lamps form a row. The extent of the exemplar serves as the other period.
+//! - If there is only one such shift, the lamps form a row. The other period follows from the extent.
 //! - If there is none, and only a few lamps, the exemplar repeats as a whole. Its extents serve as both periods.
 //! - If there is none, but many lamps, patches are placed without a lattice.
 
