@@ -1,8 +1,8 @@
 //! Tests that plans are accurate: the times and errors that they predict match the actual ones, on rooms and image
 //! sizes to which no parameter of the predictor was fitted.
 //!
-//! Times are processor times of one thread, so other work on the machine does not count. `make bench ONLY=plan`
-//! measures more cases and whole transfers.
+//! Times are processor times of one thread. The tests of this file run one at a time, because work on one processor
+//! slows another one that shares its caches. `make bench ONLY=plan` measures more cases and whole transfers.
 
 // Only benches use the other clocks of this module.
 #[allow(dead_code)]
@@ -24,7 +24,13 @@ use luxfer::scene::surface;
 use luxfer::scene::{Camera, Scene};
 use luxfer::transfer::{Input, Stage, Transfer};
 use outcomes::{Outcomes, error_of, within};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Returns a guard; no other test of this file runs until it is dropped.
+fn alone() -> MutexGuard<'static, ()> {
+    static TURN: Mutex<()> = Mutex::new(());
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// The furnished demonstration room with nine lamps in its ceiling, and the demonstration office with its own lamps.
 fn rooms() -> [(Scene, Camera); 2] {
@@ -51,6 +57,7 @@ fn shot(world: &World, camera: &Camera, params: &Params) -> (f64, Film) {
 
 #[test]
 fn renderings_take_the_time_and_leave_the_error_that_was_expected() {
+    let _alone = alone();
     let mut all = Outcomes::default();
     Pool::new(1).unwrap().run(|| {
         for (scene, camera) in rooms() {
@@ -84,6 +91,7 @@ fn renderings_take_the_time_and_leave_the_error_that_was_expected() {
 /// edges of lamps. The predicted error must not depend on which tiles the seed selects.
 #[test]
 fn what_is_expected_does_not_hang_on_the_seed() {
+    let _alone = alone();
     Pool::new(1).unwrap().run(|| {
         for (scene, camera) in rooms() {
             let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
@@ -109,6 +117,7 @@ fn what_is_expected_does_not_hang_on_the_seed() {
 
 #[test]
 fn the_light_of_a_transfer_is_planned() {
+    let _alone = alone();
     let pool = Pool::new(2).unwrap();
     let monitor = Monitor::default();
     let room = demo::exemplar_room().unwrap();
