@@ -90,8 +90,6 @@ pub struct Correlated {
     height: usize,
     /// Number of valid pixels of the reduced image.
     valid: usize,
-    /// Minimum number of pixels that must overlap at a shift.
-    min_overlap: f32,
     /// Unwarped pixels per pixel of the reduced image.
     to_unwarped: DVec2,
 }
@@ -113,8 +111,12 @@ impl Correlated {
         let values: Vec<f32> = mask.data.chunks_exact(2).map(|p| if p[1] > 0.5 { p[0] / p[1] } else { 0.0 }).collect();
         let correlation = Autocorrelation::new(&values, &valid, width, height, job.part(0.2, 1.0))?;
         let to_unwarped = DVec2::new(exemplar.width as f64 / width as f64, exemplar.height as f64 / height as f64);
-        let valid = valid.iter().filter(|&&v| v).count();
-        Ok(Self { correlation, width, height, valid, min_overlap: MIN_OVERLAP * valid as f32, to_unwarped })
+        Ok(Self { correlation, width, height, valid: valid.iter().filter(|&&v| v).count(), to_unwarped })
+    }
+
+    /// Minimum number of pixels that must overlap at a shift.
+    fn min_overlap(&self) -> f32 {
+        MIN_OVERLAP * self.valid as f32
     }
 
     /// The lowest correlation at a period of a lattice or a row. `None` for other laws, and if too few pixels overlap.
@@ -131,7 +133,7 @@ impl Correlated {
     fn at(&self, shift: DVec2) -> Option<f32> {
         let [x, y] = (shift / self.to_unwarped).floor().to_array().map(|v| v as isize);
         let next = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].into_iter();
-        next.filter_map(|(x, y)| self.correlation.at(x, y, self.min_overlap)).reduce(f32::max)
+        next.filter_map(|(x, y)| self.correlation.at(x, y, self.min_overlap())).reduce(f32::max)
     }
 }
 
@@ -169,7 +171,8 @@ pub fn shifts(
     relative: f32,
     max_count: usize,
 ) -> Vec<(DVec2, f64)> {
-    let &Correlated { ref correlation, width, height, valid, min_overlap: overlap, to_unwarped } = correlated;
+    let &Correlated { ref correlation, width, height, valid, to_unwarped } = correlated;
+    let overlap = correlated.min_overlap();
     let unchanging: Vec<DVec2> =
         [DVec2::X, DVec2::Y].into_iter().filter(|&axis| repeats::is_unchanging(correlation, axis, overlap)).collect();
     let mut found = repeats::peaks(correlation, (width, height), (overlap, min_value), unchanging.first().copied());
