@@ -32,7 +32,9 @@
 //!   and the lit share of the plane. Lamps longer than six times their width are lines: for lines the width and the
 //!   distance between neighbouring lines are compared instead. Where lamps were listed by hand, which lists
 //!   windows and not their panes, lamps of the texture count as one if the gap between them is at most a fifth of the
-//!   true lamps' shorter side and half of the gaps between true lamps.
+//!   true lamps' shorter side and half of the gaps between true lamps. Lamps listed by hand in two sizes, at least 1.5
+//!   times as large as each other, are two kinds: each lamp of the texture is then compared with the kind whose area is
+//!   nearest.
 //! - *Right*: precision above 0.8, found at least 90 %, and the texture's area and aspect within a factor of 1.25, its
 //!   spacing within 1.1, its lit share within 1.35.
 //! - *Usable*: precision above 0.5, found at least 70 %, and factors of 2, 1.6, 1.3 and 2.

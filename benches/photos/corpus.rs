@@ -205,7 +205,7 @@ fn measured_layout(record: &Value, measured: &[Value]) -> Option<Lamps> {
 fn listed_layout(listed: &[Value]) -> Option<Lamps> {
     let corners = listed.iter().filter_map(|item| plane_corners(&item["ceiling_uv"]));
     let whole: Vec<Shape> = corners.filter_map(|corners| Shape::of(&corners, None)).collect();
-    (!whole.is_empty()).then(|| Lamps { whole, ..Lamps::default() }.with_bars())
+    (!whole.is_empty()).then(|| Lamps { whole, ..Lamps::default() }.with_bars().with_kinds())
 }
 
 /// The lamps that the photo shows whole, from their pixels mapped into the plane.

@@ -100,6 +100,11 @@ pub struct Lamps {
 /// Panes are one lamp if the bar between them is at most this share of the lamps' shorter side. [convention]
 const MAX_BAR: f64 = 0.2;
 
+/// Lamps listed by hand are of two kinds if those of one are at least `MIN_KIND_RATIO` times as large as those of the
+/// other, and each kind has at least the share `MIN_KIND_SHARE` of the lamps. [convention]
+const MIN_KIND_RATIO: f64 = 1.5;
+const MIN_KIND_SHARE: f64 = 0.25;
+
 impl Lamps {
     /// Whether the median lamp is a line.
     pub fn are_lines(&self) -> bool {
@@ -153,6 +158,21 @@ impl Lamps {
         let side = median(self.whole.iter().map(|s| s.sides.y)).unwrap_or(0.0);
         let bar = pairs.map(|gap| 0.5 * gap).fold(MAX_BAR * side, f64::min);
         Self { bar, ..self }
+    }
+
+    /// For lamps listed by hand: gives them two kinds if they are of two sizes, like the narrow and the wide windows of
+    /// a skylight. The two kinds lie on both sides of the widest gap between areas. Medians over all lamps would depend
+    /// on how many of each kind the photo happens to show.
+    pub fn with_kinds(mut self) -> Self {
+        let mut areas: Vec<f64> = self.whole.iter().map(|shape| shape.area).collect();
+        areas.sort_by(f64::total_cmp);
+        let ratio = |n: &usize| areas[*n] / areas[n - 1];
+        let least = (MIN_KIND_SHARE * areas.len() as f64).ceil().max(1.0) as usize;
+        let gap = (least..(areas.len() + 1).saturating_sub(least)).max_by(|a, b| ratio(a).total_cmp(&ratio(b)));
+        if let Some(gap) = gap.filter(|gap| ratio(gap) >= MIN_KIND_RATIO) {
+            self.kinds = self.whole.iter().map(|shape| usize::from(shape.area >= areas[gap])).collect();
+        }
+        self
     }
 
     pub fn area(&self) -> Option<f64> {

@@ -72,6 +72,7 @@ pub struct Sites {
     pub basis: [DVec2; 2],
     /// Length of the shorter period, or of the only period of a row, in unwarped pixels.
     shortest: f64,
+    /// Whether the lamps repeat along the first vector of the basis only.
     is_row: bool,
 }
 
@@ -81,7 +82,8 @@ impl Sites {
     pub fn new(exemplar: &Exemplar, lamps: &[MeasuredLamp], law: Law) -> Option<Self> {
         let (basis, is_row) = match law {
             Law::Lattice(basis) => (basis, false),
-            Law::Row(basis) => (basis, true),
+            // On a luminous ceiling, the second vector is a period too (`extent::of_panes`).
+            Law::Row(basis) => (basis, !exemplar.is_luminous_ceiling()),
             _ => return None,
         };
         let to_cells = DMat2::from_cols(basis[0], basis[1]).inverse();

@@ -26,6 +26,11 @@ const SECTIONS: usize = 24;
 /// Maximum number of consecutive sections ([`Section`]) of a bar that a crossing bar may hide. It suffices for a
 /// crossing bar of the maximum width. [convention]
 const MAX_HIDDEN_SECTIONS: usize = 2;
+/// A line between two bars is a lead strip inside a pane, and no bar, if two conditions hold: its width is at most
+/// `MAX_STRIP_SHARE` of the distance between the bars, and the strength of both bars ([`Bar::strength`]) is at least
+/// `MIN_BAR_STRENGTH` times its own. [bench photos:real]
+const MAX_STRIP_SHARE: f64 = 0.03;
+const MIN_BAR_STRENGTH: f64 = 1.5;
 /// Where the photo is sharp, a section ([`Section`]) shows no bar if its depth is below this share of the whole bar's
 /// depth. [bench photos:tune]
 const MIN_SECTION_DEPTH: f32 = 0.25;
@@ -69,6 +74,48 @@ impl Bar {
     fn centre(&self) -> f64 {
         (self.first + self.last) as f64 / 2.0
     }
+
+    fn width(&self) -> usize {
+        self.last + 1 - self.first
+    }
+
+    /// The amount of light that the bar hides: its width times its depth.
+    fn strength(&self) -> f64 {
+        self.width() as f64 * f64::from(self.depth)
+    }
+}
+
+/// Several bars close to each other, such as the dark edges of a moulding: the range of positions that they cover, and
+/// the sum of their strengths.
+struct BarGroup {
+    first: usize,
+    last: usize,
+    strength: f64,
+}
+
+/// Groups bars, which are in the order of their position, if the gap between two neighbours is at most the width of the
+/// wider one.
+fn groups(bars: &[Bar]) -> Vec<BarGroup> {
+    let is_close = |a: &Bar, b: &Bar| b.first <= a.last + 1 + a.width().max(b.width());
+    let group = |bars: &[Bar]| BarGroup {
+        first: bars[0].first,
+        last: bars[bars.len() - 1].last,
+        strength: bars.iter().map(Bar::strength).sum(),
+    };
+    bars.chunk_by(is_close).map(group).collect()
+}
+
+/// Removes the lead strips inside panes from the bars ([`MAX_STRIP_SHARE`]).
+fn remove_strips(bars: &mut Vec<Bar>) {
+    let groups = groups(bars);
+    let is_strip = |around: &[BarGroup]| {
+        let [before, strip, after] = around else { return false };
+        let width = (strip.last + 1 - strip.first) as f64;
+        width <= MAX_STRIP_SHARE * (after.first - before.last) as f64
+            && before.strength.min(after.strength) >= MIN_BAR_STRENGTH * strip.strength
+    };
+    let strips: Vec<&BarGroup> = groups.windows(3).filter(|around| is_strip(around)).map(|around| &around[1]).collect();
+    bars.retain(|bar| !strips.iter().any(|strip| (strip.first..=strip.last).contains(&bar.first)));
 }
 
 /// View of the plane for detecting the bars of one direction: columns if `is_column`, else rows. A pixel has the
@@ -143,7 +190,7 @@ impl<'a> Lines<'a> {
         self.along.div_ceil(SECTIONS)
     }
 
-    /// Finds the bars that the photo shows.
+    /// Finds the bars that the photo shows, without the lead strips inside panes.
     pub fn bars(&self) -> Vec<Bar> {
         let min_known = (self.along as f64 * MIN_LENGTH) as usize;
         let profile: Vec<Option<f32>> =
@@ -171,6 +218,7 @@ impl<'a> Lines<'a> {
         }
         bars.sort_by_key(|bar| bar.first);
         bars.retain(|bar| bar.last - bar.first < self.widest);
+        remove_strips(&mut bars);
         bars
     }
 

@@ -215,6 +215,32 @@ mod tests {
     }
 
     #[test]
+    fn lead_strips_between_wide_bars_are_no_bars() {
+        // Panes with sides of 70 pixels, and bars of 10 pixels between them. A strip of `strip` pixels runs along the
+        // middle of each row of panes.
+        const SIDE: usize = 400;
+        let panes_with = |strip: usize| {
+            let is_inside = |n: usize| (5..SIDE - 5).contains(&n);
+            let is_bar = |n: usize| n % 80 < 5 || n % 80 >= 75;
+            let is_strip = |n: usize| (40..40 + strip).contains(&(n % 80));
+            let luminance = |x: usize, y: usize| match is_inside(x) && is_inside(y) {
+                true if is_bar(x) || is_bar(y) || is_strip(y) => 0.3,
+                true => 1.0,
+                false => 0.1,
+            };
+            let unwarped = Image::from_fn(SIDE, SIDE, |x, y| [luminance(x, y); 3]).unwrap();
+            let light = Image::from_fn(SIDE, SIDE, |x, y| [f32::from(is_inside(x) && is_inside(y))]).unwrap();
+            let valid = Image::from_fn(SIDE, SIDE, |_, _| [1.0]).unwrap();
+            let plane = LitPlane { unwarped: &unwarped, light: &light, valid: &valid, to_photo: None };
+            let light = part(&plane, Monitor::default().job()).unwrap().unwrap();
+            components::find(SIDE, SIDE, |i| light.data[i] >= 0.5).unwrap().list.len()
+        };
+        // The strips in the first and in the last row of panes lie between a bar and the border, so they are bars.
+        assert_eq!(panes_with(2), 5 * 7);
+        assert_eq!(panes_with(6), 5 * 10);
+    }
+
+    #[test]
     fn lamps_on_a_ceiling_are_no_panes() {
         let is_lamp = |n: usize| n % 60 < 24;
         let lit = |x: usize, y: usize| is_lamp(x) && is_lamp(y);

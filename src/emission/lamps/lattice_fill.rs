@@ -124,8 +124,15 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
 
 /// Returns the components that may be drawn at a site: its whole lamps that are sharp in the photo. If any whole lamp
 /// has a design, only lamps with a design are returned. If there is no whole lamp, returns the site's first lamp.
+///
+/// On a luminous ceiling, only panes of the site's main kind are returned, because a larger pane would overlap its
+/// neighbours. The main kind is the one with most photo pixels.
 fn sharpest(site: &Site, exemplar: &Exemplar, designs: &Designs) -> Vec<usize> {
-    let whole = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole);
+    let kind = |l: &MeasuredLamp| designs.of(l.component).map(|(_, fitted)| fitted.kind);
+    let shown = |k: Option<usize>| site.lamps.iter().filter(|l| kind(l) == k).map(|l| l.weight).sum::<f64>();
+    let main = site.lamps.iter().map(kind).max_by(|a, b| shown(*a).total_cmp(&shown(*b))).flatten();
+    let fits = |l: &MeasuredLamp| !exemplar.is_luminous_ceiling() || kind(l) == main;
+    let whole = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole && fits(l));
     let has_design = |l: &MeasuredLamp| designs.of(l.component).is_some();
     let any_design = whole().any(has_design);
     let clear = || whole().filter(|l| !any_design || has_design(l));

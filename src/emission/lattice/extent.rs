@@ -4,6 +4,7 @@ use super::law::Law;
 use crate::emission::agreement::statistics;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
+use crate::emission::exemplar::measured_lamp::MAX_PANE_DIFFERENCE;
 use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
@@ -28,31 +29,63 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
     DVec2::new((x1 - x0) as f64, (y1 - y0) as f64) * exemplar.working.pitch
 }
 
-/// The period, along x and along y, with which a luminous ceiling repeats as a whole, in unwarped pixels. It is the
-/// length of the box around all panes, plus the width of the widest bar between panes.
+/// The period, along x and along y, with which a luminous ceiling repeats as a whole, in unwarped pixels. If the first
+/// and the last column of panes are alike, the last column of a copy is the first one of the next copy
+/// ([`to_like_column`]). Otherwise the period is the length of the box around all panes, plus the width of the widest
+/// bar between panes. The same holds for rows.
 pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
     let panes = || exemplar.components.list.iter();
     let [[width, column], [height, row]] = [spread(panes(), 0, usize::max), spread(panes(), 1, usize::max)];
     // A single column or row of panes has bars along one axis only. Their width then serves for the other axis as well.
     let bar = |own: f64, other: f64| if own > 0.0 { own } else { other };
-    DVec2::new(width + bar(column, row), height + bar(row, column))
+    DVec2::new(
+        to_like_column(exemplar, 0).unwrap_or(width + bar(column, row)),
+        to_like_column(exemplar, 1).unwrap_or(height + bar(row, column)),
+    )
+}
+
+/// The distance along an axis (0 for x, 1 for y) from the first to the last column of panes, in unwarped pixels, if the
+/// two are equally wide and a column between them is not. `None` for other columns, and if the first or the last one
+/// has no whole pane.
+fn to_like_column(exemplar: &Exemplar, axis: usize) -> Option<f64> {
+    let columns = intervals(exemplar.components.list.iter(), axis);
+    let (&first, &last) = (columns.first()?, columns.last()?);
+    let width = |column: [usize; 2]| (column[1] - column[0]) as f64;
+    let is_like_first = |column: [usize; 2]| {
+        (width(column) - width(first)).abs() <= MAX_PANE_DIFFERENCE * width(column).max(width(first))
+    };
+    let has_whole = |column: [usize; 2]| {
+        let is_in = |lamp: &Component| column[0] <= lamp.min[axis] && lamp.max[axis] < column[1];
+        exemplar.components.list.iter().zip(&exemplar.roles).any(|(lamp, role)| role.is_whole() && is_in(lamp))
+    };
+    let centre = |column: [usize; 2]| (column[0] + column[1]) as f64 / 2.0;
+    let takes_its_place = is_like_first(last) && !columns.iter().all(|column| is_like_first(*column));
+    (takes_its_place && has_whole(first) && has_whole(last)).then(|| centre(last) - centre(first))
 }
 
 /// Returns two lengths along an axis (0 for x, 1 for y), in unwarped pixels: that of the box around all `lamps`, and
 /// that of a gap between lamps. A gap is an interval of the axis that no lamp reaches into. If there are several,
 /// `choose` picks the longest or the shortest one. If there is none, the length of the gap is 0.
 fn spread<'a>(lamps: impl Iterator<Item = &'a Component>, axis: usize, choose: fn(usize, usize) -> usize) -> [f64; 2] {
+    let taken = intervals(lamps, axis);
+    let gap = taken.windows(2).map(|pair| pair[1][0] - pair[0][1]).reduce(choose);
+    let length = taken.last().map_or(0, |last| last[1] - taken[0][0]);
+    [length as f64, gap.unwrap_or(0) as f64]
+}
+
+/// The intervals of an axis (0 for x, 1 for y) into which lamps reach, in ascending order: the first position of each,
+/// and the position after its last one.
+fn intervals<'a>(lamps: impl Iterator<Item = &'a Component>, axis: usize) -> Vec<[usize; 2]> {
     let mut spans: Vec<[usize; 2]> = lamps.map(|lamp| [lamp.min[axis], lamp.max[axis] + 1]).collect();
     spans.sort_unstable();
-    let first = spans.first().map_or(0, |span| span[0]);
-    let (mut end, mut gap) = (first, None);
+    let mut intervals: Vec<[usize; 2]> = Vec::new();
     for span in spans {
-        if span[0] > end {
-            gap = Some(gap.map_or(span[0] - end, |gap| choose(gap, span[0] - end)));
+        match intervals.last_mut() {
+            Some(last) if span[0] <= last[1] => last[1] = last[1].max(span[1]),
+            _ => intervals.push(span),
         }
-        end = end.max(span[1]);
     }
-    [(end - first) as f64, gap.unwrap_or(0) as f64]
+    intervals
 }
 
 /// The period, along x and along y, with which an exemplar repeats if it shows rows of lamps, in unwarped pixels. Along

@@ -140,6 +140,22 @@ fn columns_of_windows_at_unequal_distances_repeat_as_one() {
     }
 }
 
+/// A skylight of three columns shows no period along x, but begins and ends with narrow windows. The last column of a
+/// repetition is the first one of the next, so that narrow and wide windows alternate.
+#[test]
+fn a_skylight_that_begins_and_ends_with_like_columns_alternates() {
+    let lies_in = |n: f64, panes: &[[f64; 2]]| panes.iter().any(|pane| (pane[0]..pane[1]).contains(&n));
+    let across = |x: f64| lies_in(x, &[[28.0, 48.0], [64.0, 90.0], [94.0, 120.0], [136.0, 156.0]]);
+    let down = |y: f64| lies_in((y - 8.0).rem_euclid(84.0), &[[0.0, 30.0], [34.0, 64.0]]);
+    let result = continued(&Design::new(190, 380, |x, y| across(x) && down(y)));
+    let Law::Row([period, repeat]) = result.law else { panic!("{:?}", result.law) };
+    assert!((period.length() - 84.0).abs() < 1.0 && (repeat.length() - 108.0).abs() < 1.0, "{:?}", result.law);
+    // Each pane keeps its width: no wide pane stands in a narrow column.
+    let widths: Vec<f64> = inner(&result.luminaires, 500, 400).iter().map(|lamp| lamp.size.min_element()).collect();
+    let narrow = widths.iter().filter(|width| **width < 23.0).count();
+    assert!((narrow as f64 / widths.len() as f64 - 1.0 / 3.0).abs() < 0.1, "{narrow} of {}", widths.len());
+}
+
 #[test]
 fn lamps_that_the_border_cuts_show_a_period() {
     // Two whole lamps, and above them two lamps of which the photo shows only the lower half.
