@@ -2,7 +2,9 @@
 
     blocks.py check
         checks that each block is part of a program that a test compiles or runs, or can be run itself
-    blocks.py run FOLDER LIBRARY [LANGUAGE...]
+    blocks.py list
+        prints the pages that have blocks to run, each with the language of the blocks
+    blocks.py run FOLDER LIBRARY [LANGUAGE...] [PAGE...]
         runs the Python and shell blocks page by page; their pictures go into FOLDER
 
 A block consists either of `--8<--` lines only, which name parts of programs, or of Python or shell code. The Python
@@ -115,26 +117,43 @@ def quiet(command: list[str], program: str, folder: Path, environment: dict[str,
     return done.returncode
 
 
-def run(folder: Path, library: Path, languages: list[str]) -> list[str]:
-    environment = {**os.environ, "LUXFER_LIBRARY": str(library), "PYTHONPATH": str(ROOT / "bindings" / "python")}
-    problems = []
+def runnable() -> list[tuple[Path, str]]:
+    """Returns the pages that have blocks to run, each with the language of the blocks."""
+    found = []
     for page in pages():
-        for language in languages:
-            began = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-            runner = run_python(page, folder, environment) if language == "python" else run_sh(page, library, environment)
-            took = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - began
-            if runner != 0:
-                problems.append(f"{page.relative_to(ROOT)}: its blocks of {language} fail")
-            if took > 0.5:
-                print(f"{took:6.1f} s of processors  {page.relative_to(GUIDE)}, {language}", flush=True)
-    return problems
+        languages = {language for _, language, text in blocks(page) if language in RUN and parts(text) is None}
+        found += [(page, language) for language in sorted(languages)]
+    return found
+
+
+def run(folder: Path, library: Path, asked: list[str]) -> list[str]:
+    environment = {**os.environ, "LUXFER_LIBRARY": str(library), "PYTHONPATH": str(ROOT / "bindings" / "python")}
+    languages = [word for word in asked if word in RUN] or list(RUN)
+    names = [word for word in asked if word not in RUN]
+    problems, ran = [], set()
+    for page, language in runnable():
+        name = str(page.relative_to(GUIDE))
+        if language not in languages or names and name not in names:
+            continue
+        ran.add(name)
+        began = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        code = run_python(page, folder, environment) if language == "python" else run_sh(page, library, environment)
+        took = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - began
+        if code != 0:
+            problems.append(f"{page.relative_to(ROOT)}: its blocks of {language} fail")
+        print(f"{took:6.1f} s of processors  {name}, {language}", flush=True)
+    return problems + [f"{name} is no page with blocks of {' or '.join(languages)}" for name in names if name not in ran]
 
 
 def main(arguments: list[str]) -> int:
     if arguments == ["check"]:
         problems = check()
-    elif len(arguments) >= 3 and arguments[0] == "run" and set(arguments[3:]) <= set(RUN):
-        problems = run(Path(arguments[1]).resolve(), Path(arguments[2]).resolve(), arguments[3:] or list(RUN))
+    elif arguments == ["list"]:
+        problems = []
+        for page, language in runnable():
+            print(page.relative_to(GUIDE), language)
+    elif len(arguments) >= 3 and arguments[0] == "run":
+        problems = run(Path(arguments[1]).resolve(), Path(arguments[2]).resolve(), arguments[3:])
     else:
         print(__doc__, file=sys.stderr)
         return 2
