@@ -121,7 +121,7 @@ impl Composition {
         if around == tile {
             return Ok((texture, mask));
         }
-        Ok((tile.cut(&texture, around)?, tile.cut(&mask, around)?))
+        Ok((tile.cut(texture, around)?, tile.cut(mask, around)?))
     }
 
     /// Renders the whole texture and its coverage, and finds the connected lights of the coverage.
