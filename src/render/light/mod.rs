@@ -21,6 +21,7 @@ mod tree;
 
 pub use bounds::{Bounds, Receiver};
 pub use lamp_visibility::LampVisibility;
+pub use luminous_surfaces::connected;
 
 use super::contribution::LightSource;
 use super::emissive::{Emitters, mean_channel};
