@@ -134,6 +134,13 @@ impl Lights {
         self.inventory.pieces
     }
 
+    /// Returns the corners of the boxes around the lit parts of the pieces, in world coordinates.
+    pub fn piece_corners(&self) -> impl Iterator<Item = Vec3> {
+        let of_box = |b: &Bounds| [b.low.to_array(), b.high.to_array()];
+        let boxes = self.inventory.bounds[..self.inventory.pieces].iter().map(of_box);
+        boxes.flat_map(|ends| (0..8).map(move |i| Vec3::from_array([0, 1, 2].map(|axis| ends[(i >> axis) & 1][axis]))))
+    }
+
     /// Samples a light for a receiver: `u` selects the light. The remainder of `u`, rescaled to `[0, 1)`, and `v`
     /// select the point on the light. Returns `None` if no light can be sampled or the sampled point faces away.
     #[inline]

@@ -271,15 +271,6 @@ fn a_panel_as_a_mesh_rates_as_the_panel_of_a_file() {
     assert!(rated(shining_room(turned, 1000.0), EYE, 64).sources.is_empty());
 }
 
-/// A ball of polygons. Its projected area is that of the sphere within 0.08 %.
-fn ball(centre: Vec3, diameter: f64) -> Mesh {
-    use crate::photometry::faces::{Emits, Faces};
-    let opening = crate::photometry::opening::Opening::Ellipsoid(DVec3::splat(diameter));
-    let faces = Faces::new(&opening, Emits { forwards: true, backwards: true }, 0.0);
-    let positions = faces.points.iter().map(|p| centre + p.as_vec3()).collect();
-    Mesh { positions, triangles: faces.triangles, ..Mesh::default() }
-}
-
 /// A sphere of radius R at distance d has the solid angle 2π (1 - √(1 - R²/d²)) and its own luminance.
 #[test]
 fn a_sphere_of_uniform_radiance_has_its_closed_form() {
