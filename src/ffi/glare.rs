@@ -59,10 +59,11 @@ pub struct luxfer_observer_glare {
 
 /// Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
 /// samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
-/// 4096 paths suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to
-/// count times samples; in a scene with emissive meshes, the sources take about as long as 4096 paths. observer_stride and rating_stride are the distances between elements in bytes; 0:
-/// sizeof(luxfer_observer), sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also
-/// prepares the scene for tracing. Any thread.
+/// 4096 paths suit most rooms. seed is the seed of the paths, and of the rays that find luminous meshes. The call is
+/// synchronous; its time is proportional to count times samples, and longer in a scene with emissive meshes.
+/// observer_stride and rating_stride are the distances between elements in bytes; 0: sizeof(luxfer_observer),
+/// sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also prepares the scene for
+/// tracing. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
 /// straight up or down, or is inside a luminaire (the message names the observer). In these cases no rating is written.
 #[unsafe(no_mangle)]

@@ -80,8 +80,9 @@ versioned!(luxfer_gonio_report, [40], {
 /// The result is of absolute photometry, states no power and no colour, and its name is that of the first mesh with a
 /// name. Its luminous opening is the box, vertical cylinder or ellipsoid that agrees best with the parts that emit.
 /// Intensities between the angles are interpolated linearly; the stated errors are those of the paths alone. The caller
-/// releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is proportional
-/// to planes times angles times samples, a few seconds with the defaults. luxfer_job_start runs it as a job. Any thread.
+/// releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
+/// proportional to planes times angles times samples, seconds with the defaults. luxfer_job_start runs it as a job. Any
+/// thread.
 /// LUXFER_DEGENERATE if no mesh emits light, or if none leaves the meshes, as from a closed room;
 /// LUXFER_INVALID_ARGUMENT if a mesh does not exist, a setting is out of range, or the scene is not valid.
 #[unsafe(no_mangle)]

@@ -1,4 +1,5 @@
-//! A goniophotometer: the luminous intensity distribution of emissive bodies, far away from them, in C planes (CIE 121).
+//! A goniophotometer: the luminous intensity distribution of emissive bodies, far away from them, in C planes (CIE
+//! 121).
 //!
 //! The intensity in a direction is the integral of the bodies' luminance towards it over a plane perpendicular to it.
 //! Parallel rays estimate the integral. Each starts at a random point of the box around the bodies, as seen from this

@@ -333,8 +333,8 @@ class Scene(Handle):
         self, positions: ArrayLike, directions: ArrayLike, samples: int = 4096, seed: int = 1
     ) -> NDArray[Any]:
         """Rates the glare of the scene's luminaires and emissive meshes (UGR) for observers with positions (n, 3) and
-        lines of sight (n, 3). Returns a structured array with the fields ugr, background, background_error, unrated_lux, solid_angle,
-        sources, outside_range.
+        lines of sight (n, 3). Returns a structured array with the fields ugr, background, background_error,
+        unrated_lux, solid_angle, sources, outside_range.
 
         >>> Scene.demo(context, "target-room").glare([[3, 1.2, 1]], [[0, 0, 1]], samples=16)["sources"].item()
         0

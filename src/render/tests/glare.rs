@@ -317,8 +317,8 @@ fn lamps_of_a_texture_are_sources_of_their_own() {
     luminances.sort_by(f64::total_cmp);
     assert_eq!(luminances.len(), 3, "{rating:?}");
     assert!(luminances.iter().zip([4000.0, 8000.0, 8000.0]).all(|(l, want)| (l / want - 1.0).abs() < 1e-5));
-    // The lamps have 3/64 of the sheet. The rest emits 80 cd/m², which the rating leaves out: its illuminance at the eye
-    // is 80 times the projected solid angle, which is that of the sheet less that of the lamps.
+    // The lamps have 3/64 of the sheet. The rest emits 80 cd/m², which the rating leaves out: its illuminance at the
+    // eye is at most 80 times the solid angle of the sheet.
     let projected = |light: f32| {
         let mut plain = scene.clone();
         (plain.materials[1].emission, plain.materials[1].emission_texture) = (Vec3::splat(light), None);
