@@ -56,6 +56,7 @@ LUXFER_STRUCT_RENDER_PART = 26
 LUXFER_STRUCT_DEMO_PHOTO_PARAMS = 27
 LUXFER_STRUCT_PENDANTS_PARAMS = 28
 LUXFER_STRUCT_MERGE_PARAMS = 29
+LUXFER_STRUCT_GONIO_PARAMS = 30
 LUXFER_VIEW_BOTTOM_UP = 1
 LUXFER_SAMPLE_U8 = 0
 LUXFER_SAMPLE_U16 = 1
@@ -1345,6 +1346,46 @@ class luxfer_observer_glare(Structure):
     result = types.ObserverGlare
 
 
+class luxfer_gonio_params(Structure):
+    """Settings of luxfer_scene_get_distribution: the directions, the paths and the axes of the luminaire."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("planes", c_uint32),
+        ("angles", c_uint32),
+        ("samples", c_uint32),
+        ("seed", c_uint64),
+        ("axis", c_float * 3),
+        ("c0", c_float * 3),
+    ]
+    struct_type = LUXFER_STRUCT_GONIO_PARAMS
+
+
+class luxfer_gonio_report(Structure):
+    """Settings of luxfer_scene_get_distribution: the directions, the paths and the axes of the luminaire.
+    pr(C)] rive(Clone, Copy)] struct GonioParams { /// sizeof(GonioParams), set by luxfer_gonio_params_init. pub
+    struct_size: u32, /// Number of C planes, in [1, 360], at equal angles around the axis; default 24. A single
+    plane, C = 0, holds for /// all directions around the axis. pub planes: u32, /// Number of vertical angles
+    gamma in each C plane, in [2, 361], at equal angles from 0 to 180 degrees; default 73. pub angles: u32, ///
+    Paths per direction, in [16, 16777216], rounded up to a multiple of 16; default 1024. pub samples: u32, ///
+    Seed of the paths; default 1. pub seed: u64, /// Direction of the luminaire's axis, in which gamma is 0; any
+    length but 0; default (0, -1, 0): down. pub axis: [f32; 3], /// Direction of the half-plane C = 0; it must
+    not be parallel to axis, and only its component perpendicular to /// axis counts. Default (1, 0, 0). For an
+    axis that points down, C grows anticlockwise as seen from above. pub c0: [f32; 3], ioned!(GonioParams, [48],
+    { let d = gonio::Params::default(); Self { struct_size: 48, planes: d.planes, angles: d.angles, samples:
+    d.samples, seed: d.seed, axis: d.axis.to_array(), c0: d.c0.to_array(), } Errors of a distribution that
+    luxfer_scene_get_distribution has measured, and the place of its luminaire."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("position", c_float * 3),
+        ("flux", c_double),
+        ("flux_error", c_double),
+        ("intensity_error", c_double),
+    ]
+    result = types.GonioReport
+
+
 class luxfer_false_colour_params(Structure):
     """Settings of a false colour image."""
 
@@ -1790,6 +1831,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
     "luxfer_scene_get_glare": (c_int32, [("scene", POINTER(luxfer_scene)), ("observers", POINTER(luxfer_observer)), ("count", c_size_t), ("observer_stride", c_size_t), ("samples", c_uint32), ("seed", c_uint64), ("ratings", POINTER(luxfer_observer_glare)), ("rating_stride", c_size_t)]),
+    "luxfer_scene_get_distribution": (c_int32, [("scene", POINTER(luxfer_scene)), ("meshes", POINTER(c_uint32)), ("count", c_size_t), ("params", POINTER(luxfer_gonio_params)), ("distribution", POINTER(POINTER(luxfer_distribution))), ("report", POINTER(luxfer_gonio_report)), ("size", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
     "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_size_t), ("max_drive", c_double), ("rgb", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),
