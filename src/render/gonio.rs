@@ -66,6 +66,9 @@ pub struct Output {
 /// Number of independent estimates of each intensity; their variance gives the standard errors. With any number from 8
 /// to 32 the mean has the same expected value. [convention]
 const BATCHES: usize = 16;
+/// The shape of the luminous opening is chosen by the directions in which at least this share of the largest luminous
+/// area is seen. In other directions, a shade or the back of a flat lamp hides it. [convention]
+const MIN_SEEN: f64 = 0.8;
 /// Sides of the box around the emitting parts that are shorter than this share of its longest side count as 0.
 /// [rounding]
 const FLAT: f64 = 1e-5;
@@ -285,13 +288,11 @@ impl<'a> Goniometer<'a> {
             shapes.push([-x, -y, z]);
             shapes.extend((z > 0.0).then_some([-x, -y, -z]));
         }
-        let misfit = |shape: &[f64; 3]| {
+        let largest = measured.iter().map(|found| found.luminous_area).fold(0.0, f64::max);
+        let misfit = |shape: &[f64; 3]| -> f64 {
             let Some(opening) = Opening::new(*shape, None) else { return f64::INFINITY };
-            let of_direction = |(angles, intensity): (&[f64; 2], &Intensity)| {
-                let off = opening.projected_area(local(*angles)) - intensity.luminous_area;
-                off * off * angles[1].to_radians().sin()
-            };
-            directions.iter().zip(measured).map(of_direction).sum::<f64>()
+            let seen = directions.iter().zip(measured).filter(|(_, found)| found.luminous_area >= MIN_SEEN * largest);
+            seen.map(|(angles, found)| (opening.projected_area(local(*angles)) - found.luminous_area).powi(2)).sum()
         };
         let best = shapes.iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b)));
         best.copied().unwrap_or([x, y, z])
