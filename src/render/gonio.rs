@@ -68,7 +68,7 @@ pub struct Output {
 const BATCHES: usize = 16;
 /// The shape of the luminous opening is chosen by the directions in which at least this share of the largest luminous
 /// area is seen. In other directions, a shade or the back of a flat lamp hides it. [convention]
-const MIN_SEEN: f64 = 0.8;
+const MIN_SEEN: f64 = 0.9;
 /// Sides of the box around the emitting parts that are shorter than this share of its longest side count as 0.
 /// [rounding]
 const FLAT: f64 = 1e-5;

@@ -134,6 +134,8 @@ fn the_flux_of_a_shaded_lamp_balances() {
         let off = output.luminaire.flux() / expected - 1.0;
         let error = output.flux_error / expected;
         assert!(off.abs() < 4.0 * error + 2e-3 && error < 5e-3, "{height} {albedo}: {off} ± {error}");
+        // The shade does not change the shape of the opening: it is the square panel.
+        assert!(output.luminaire.size[0] > 0.0 && output.luminaire.size[2] == 0.0, "{:?}", output.luminaire.size);
         // Above the horizon no light leaves.
         assert!(output.luminaire.intensity(77.0, 95.0) < 1e-9 * expected);
     }
