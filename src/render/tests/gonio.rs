@@ -217,7 +217,11 @@ fn the_axes_and_the_lit_part_are_those_of_the_luminaire() {
     assert!((l.size[0] - 0.2).abs() < 1e-5 && (l.size[1] - 0.125).abs() < 1e-5, "{:?}", l.size);
     assert!(output.position.distance(Vec3::new(4.0, 1.2, 2.1875)) < 1e-5, "{}", output.position);
     let off = (l.intensity(0.0, 0.0) - 25.0).abs().max((l.intensity(90.0, 60.0) - 12.5).abs());
-    assert!(off < 1e-5 + 4.0 * output.intensity_error && output.intensity_error < 0.5, "{off} ± {}", output.intensity_error);
+    assert!(
+        off < 1e-5 + 4.0 * output.intensity_error && output.intensity_error < 0.5,
+        "{off} ± {}",
+        output.intensity_error
+    );
     // In the coordinates of a map, the result is that of the origin.
     let shift = Vec3::new(524_288.0, 0.0, -1_048_576.0);
     lamp.meshes[0].positions.iter_mut().for_each(|p| *p += shift);
