@@ -2389,19 +2389,8 @@ class GonioParams(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class GonioReport:
-    """Settings of luxfer_scene_get_distribution: the directions, the paths and the axes of the luminaire.
-    pr(C)] rive(Clone, Copy)] struct GonioParams { /// sizeof(GonioParams), set by luxfer_gonio_params_init. pub
-    struct_size: u32, /// Number of C planes, in [1, 360], at equal angles around the axis; default 24. A single
-    plane, C = 0, holds for /// all directions around the axis. pub planes: u32, /// Number of vertical angles
-    gamma in each C plane, in [2, 361], at equal angles from 0 to 180 degrees; default 73. pub angles: u32, ///
-    Paths per direction, in [16, 16777216], rounded up to a multiple of 16; default 1024. pub samples: u32, ///
-    Seed of the paths; default 1. pub seed: u64, /// Direction of the luminaire's axis, in which gamma is 0; any
-    length but 0; default (0, -1, 0): down. pub axis: [f32; 3], /// Direction of the half-plane C = 0; it must
-    not be parallel to axis, and only its component perpendicular to /// axis counts. Default (1, 0, 0). For an
-    axis that points down, C grows anticlockwise as seen from above. pub c0: [f32; 3], ioned!(GonioParams, [48],
-    { let d = gonio::Params::default(); Self { struct_size: 48, planes: d.planes, angles: d.angles, samples:
-    d.samples, seed: d.seed, axis: d.axis.to_array(), c0: d.c0.to_array(), } Errors of a distribution that
-    luxfer_scene_get_distribution has measured, and the place of its luminaire."""
+    """Errors of a distribution that luxfer_scene_get_distribution has measured, and the place of its
+    luminaire."""
 
     position: tuple[float, float, float]
     """Centre of the luminous opening in metres, in the coordinates of the scene: a luminaire with this
