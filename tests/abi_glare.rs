@@ -1,5 +1,5 @@
-//! Glare of a room that a luminaire lights: its picture shows the luminaire, or says that it lacks it, and the scene
-//! rates it.
+//! Glare of a room that a luminaire and an emissive lamp light: its picture shows the luminaire, or says that it lacks
+//! it, and the scene rates both. The lamp of the room is measured as a distribution.
 
 mod host;
 
@@ -116,13 +116,15 @@ fn the_scene_rates_its_luminaires() {
     let away = luxfer_observer { direction: [0.0, 0.0, 1.0], ..eye };
     let (status, ratings) = rate(scene, &[eye, away]);
     assert_eq!(status, LUXFER_OK, "{}", message(context));
-    assert_eq!((ratings[0].sources, ratings[1].sources, ratings[1].ugr), (1, 0, f64::NEG_INFINITY));
-    // The opening is seen at cos γ = 0.5 / r from r² = 0.5² + 1.3².
+    assert_eq!((ratings[0].sources, ratings[1].sources, ratings[1].ugr), (2, 0, f64::NEG_INFINITY));
+    // The opening is seen at cos γ = 0.5 / r from r² = 0.5² + 1.3². The emissive lamp of the room is a source, too: its
+    // edges lie 0.9 m above the eye, 0.3 to 1.3 m ahead of it and 0.5 m to each side.
     let squared = 0.25 + 1.69f64;
-    assert!((ratings[0].solid_angle - 0.36 * 0.5 / squared.powf(1.5)).abs() < 1e-6, "{}", ratings[0].solid_angle);
+    let corner = |ahead: f64| (0.5 * ahead / (0.9 * (0.25 + ahead * ahead + 0.81).sqrt())).atan();
+    let expected = 0.36 * 0.5 / squared.powf(1.5) + 2.0 * (corner(1.3) - corner(0.3));
+    assert!((ratings[0].solid_angle / expected - 1.0).abs() < 2e-3, "{} {expected}", ratings[0].solid_angle);
     assert!(ratings[0].ugr > 10.0 && ratings[0].ugr < 50.0 && ratings[0].background > 0.0, "{}", ratings[0].ugr);
-    // The emissive lamp of the room is reported as not rated.
-    assert!(ratings[0].unrated_lux > 0.0);
+    assert_eq!(ratings[0].unrated_lux, 0.0);
     // A bad observer is named, and nothing is written.
     let (status, ratings) = rate(scene, &[eye, luxfer_observer { position: [0.1, 1.5, -0.5], ..eye }]);
     assert!(status == LUXFER_INVALID_ARGUMENT && message(context).contains("observer 1"), "{}", message(context));
@@ -133,5 +135,46 @@ fn the_scene_rates_its_luminaires() {
         assert_eq!(status, LUXFER_INVALID_ARGUMENT);
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+    }
+}
+
+/// The emissive lamp of the room, a square metre of 100 cd/m² on both sides, as a distribution.
+#[test]
+fn the_lamp_of_the_room_has_a_distribution() {
+    let context = context(2);
+    let scene = scene(context);
+    unsafe {
+        let mut params = std::mem::zeroed::<luxfer_gonio_params>();
+        let size = size_of_val(&params);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_GONIO_PARAMS, (&raw mut params).cast(), size), LUXFER_OK);
+        params = luxfer_gonio_params { planes: 4, angles: 73, samples: 64, ..params };
+        let (mut lamp, mut report) = (null_mut(), std::mem::zeroed::<luxfer_gonio_report>());
+        let size = size_of_val(&report);
+        let status = luxfer_scene_get_distribution(scene, &1, 1, &params, &mut lamp, &mut report, size);
+        assert_eq!(status, LUXFER_OK, "{}", message(context));
+        // I = L A cos γ is exact, and interpolation between the angles changes the flux by less than 0.1 %.
+        assert!((report.flux / (200.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3, "{}", report.flux);
+        assert!(report.flux_error < 1e-3 && report.intensity_error < 1e-3 && report.position == [0.0, 1.9, 0.0]);
+        let mut candela = 0.0;
+        assert_eq!(luxfer_distribution_get_intensity(lamp, 12.0, 60.0, &mut candela), LUXFER_OK);
+        assert!((candela - 50.0).abs() < 1e-2, "{candela}");
+        // The whole scene is a closed room, which lets out no light; the walls alone emit none.
+        let refused = |meshes: *const u32, count, params: &luxfer_gonio_params| {
+            let mut none = null_mut();
+            let status = luxfer_scene_get_distribution(scene, meshes, count, params, &mut none, null_mut(), 0);
+            (status, none.is_null(), message(context))
+        };
+        let (status, is_null, text) = refused(std::ptr::null(), 0, &params);
+        assert!(status == LUXFER_DEGENERATE && is_null && text.contains("without its room"), "{text}");
+        assert_eq!(refused(&0, 1, &params).0, LUXFER_DEGENERATE);
+        assert_eq!(refused(std::ptr::null(), 1, &params).0, LUXFER_INVALID_ARGUMENT);
+        let (status, _, text) = refused(&2, 1, &params);
+        assert!(status == LUXFER_INVALID_ARGUMENT && text.contains("mesh is 2"), "{text}");
+        let along = luxfer_gonio_params { c0: [0.0, 2.0, 0.0], ..params };
+        let (status, _, text) = refused(&1, 1, &along);
+        assert!(status == LUXFER_INVALID_ARGUMENT && text.contains("c0 is"), "{text}");
+        for handle in [lamp.cast(), scene.cast(), context.cast()] {
+            assert_eq!(luxfer_release(handle), LUXFER_OK);
+        }
     }
 }

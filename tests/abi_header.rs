@@ -103,6 +103,7 @@ const PARTS: &[Part] = &[
             "placement",
             "photometry",
             "glare",
+            "gonio",
             "false_colour",
             "design",
             "pendants",
@@ -658,6 +659,8 @@ layouts! {
         focal_error axes_error principal axes;
     luxfer_pendant: struct_size profile_count kind doubts probability aspect diameter height drop centre residual cut
         clipped profile profile_error radiance contour reserved;
+    luxfer_gonio_params: struct_size planes angles samples seed axis c0;
+    luxfer_gonio_report: struct_size position flux flux_error intensity_error;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle unseen_lights reserved;
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size in_gamut colour delta_e;

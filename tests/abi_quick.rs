@@ -116,7 +116,7 @@ fn requirements(scene: *mut luxfer_scene) {
 }
 
 /// Every quick call that works in parallel and needs no long preparation, with its name.
-const CALLS: [(&str, fn(&Objects)); 10] = [
+const CALLS: [(&str, fn(&Objects)); 11] = [
     ("luxfer_scene_intersect, 1 ray", |o| assert_eq!(trace(o.scene, 1), 2.0)),
     ("luxfer_scene_intersect, 10000 rays", |o| assert_eq!(trace(o.scene, 10_000), 2.0)),
     ("luxfer_scene_get_requirements", |o| requirements(o.scene)),
@@ -146,6 +146,15 @@ const CALLS: [(&str, fn(&Objects)); 10] = [
     }),
     ("luxfer_sheet_align", |o| {
         new_image(o.context, |out| unsafe { luxfer_sheet_align(o.sheet, 32, 24, &o.sheet_params, out, null_mut(), 0) });
+    }),
+    ("luxfer_scene_get_distribution", |o| {
+        let (mut lamp, mut params) = (null_mut(), unsafe { std::mem::zeroed::<luxfer_gonio_params>() });
+        let size = size_of_val(&params);
+        assert_eq!(unsafe { luxfer_init(LUXFER_STRUCT_GONIO_PARAMS, (&raw mut params).cast(), size) }, LUXFER_OK);
+        (params.planes, params.samples) = (1, 16);
+        let status = unsafe { luxfer_scene_get_distribution(o.scene, &1, 1, &params, &mut lamp, null_mut(), 0) };
+        assert_eq!(status, LUXFER_OK, "{}", message(o.context));
+        assert_eq!(unsafe { luxfer_release(lamp.cast()) }, LUXFER_OK);
     }),
     ("luxfer_render_get_image", |o| {
         new_image(o.context, |out| unsafe { luxfer_render_get_image(o.render, LUXFER_RENDER_INTERVAL, out) });

@@ -771,9 +771,13 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
  * Glare of observers
  *
  * Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are the luminaires of the
- * scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as
- * seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose opening the eye sees
- * edge-on, have no such area and are not rated.
+ * scene and its emissive meshes. The luminance of a luminaire is its intensity towards the eye, divided by the area of
+ * its luminous opening as seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose
+ * opening the eye sees edge-on, have no such area and are not rated.
+ *
+ * Each connected part of a mesh that emits is a source, as are the single lamps of an emission texture. Its luminance
+ * is the mean over its visible part. Points darker than a tenth of the largest luminance of their material, such as
+ * the glow around lamps in a texture, are not rated.
  * ================================================================================================================== */
 
 /**
@@ -796,10 +800,10 @@ typedef struct luxfer_observer {
  */
 typedef struct luxfer_observer_glare {
     /**
-     * Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the rated luminaires in view, with
-     * their luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible;
-     * 19 is the limit for offices. -infinity if no rated luminaire is in view; infinity if one is in view and the
-     * background is black.
+     * Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the sources in view, with their
+     * luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible; 19 is
+     * the limit for offices. -infinity if no source is in view; infinity if one is in view and the background is
+     * black.
      */
     double ugr;
     /** Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi. */
@@ -807,25 +811,29 @@ typedef struct luxfer_observer_glare {
     /** Standard error of the field background, in cd/m². */
     double background_error;
     /**
-     * Direct illuminance at the eye, in lux, from all lights that the rating leaves out: luminaires that are not
-     * rated, point, spot and directional lights, emissive surfaces, and the environment.
+     * Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires that are not
+     * rated, of point, spot and directional lights, of the environment, and the glow of emissive meshes.
      */
     double unrated_lux;
-    /** Solid angle of the visible parts of all rated luminaires in view, in steradians. */
+    /** Solid angle of the visible parts of all sources in view, in steradians. */
     double solid_angle;
-    /** Number of rated luminaires in view. */
+    /** Number of sources in view: rated luminaires, and luminous parts of emissive meshes. */
     uint32_t sources;
-    /** Number of rated luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. */
+    /**
+     * Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Parts of
+     * meshes below a tenth of this range may be missed.
+     */
     uint32_t outside_range;
 } luxfer_observer_glare;
 
 /**
  * Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
  * samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
- * 4096 paths suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to
- * count times samples. observer_stride and rating_stride are the distances between elements in bytes; 0:
- * sizeof(luxfer_observer), sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also
- * prepares the scene for tracing. Any thread.
+ * 4096 paths suit most rooms. seed is the seed of the paths, and of the rays that find luminous meshes. The call is
+ * synchronous; its time is proportional to count times samples, and longer in a scene with emissive meshes.
+ * observer_stride and rating_stride are the distances between elements in bytes; 0: sizeof(luxfer_observer),
+ * sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also prepares the scene for
+ * tracing. Any thread.
  * LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
  * straight up or down, or is inside a luminaire (the message names the observer). In these cases no rating is written.
  */
@@ -837,6 +845,86 @@ luxfer_status luxfer_scene_get_glare(luxfer_scene *scene,
                                      uint64_t seed,
                                      luxfer_observer_glare *ratings,
                                      size_t rating_stride);
+
+/* ==================================================================================================================
+ * Distributions of bodies
+ *
+ * A goniophotometer for the meshes of a scene: computes the luminous intensity that emissive bodies have in all
+ * directions, far away from them, as a distribution that can be saved as a luminaire file.
+ * ================================================================================================================== */
+
+/**
+ * Settings of luxfer_scene_get_distribution: the directions, the paths and the axes of the luminaire. Fill them with
+ * luxfer_gonio_params_init.
+ */
+typedef struct luxfer_gonio_params {
+    /** sizeof(luxfer_gonio_params), set by luxfer_gonio_params_init. */
+    uint32_t struct_size;
+    /**
+     * Number of C planes, in [1, 360], at equal angles around the axis; default 24. A single plane, C = 0, holds for
+     * all directions around the axis.
+     */
+    uint32_t planes;
+    /**
+     * Number of vertical angles gamma in each C plane, in [2, 361], at equal angles from 0 to 180 degrees; default 73.
+     */
+    uint32_t angles;
+    /** Paths per direction, in [16, 16777216], rounded up to a multiple of 16; default 1024. */
+    uint32_t samples;
+    /** Seed of the paths; default 1. */
+    uint64_t seed;
+    /** Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): down. */
+    float axis[3];
+    /**
+     * Direction of the half-plane C = 0; it must not be parallel to axis, and only its component perpendicular to
+     * axis counts. Default (1, 0, 0). For an axis that points down, C grows anticlockwise as seen from above.
+     */
+    float c0[3];
+} luxfer_gonio_params;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_gonio_params_init(luxfer_gonio_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_GONIO_PARAMS, place, size);
+}
+
+/** Errors of a distribution that luxfer_scene_get_distribution has measured, and the place of its luminaire. */
+typedef struct luxfer_gonio_report {
+    /** sizeof(luxfer_gonio_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /**
+     * Centre of the luminous opening in metres, in the coordinates of the scene: a luminaire with this position, and
+     * with the axis and c0 of the settings, takes the place of the meshes.
+     */
+    float position[3];
+    /** Luminous flux in lumens. */
+    double flux;
+    /** Standard error of the flux, in lumens. */
+    double flux_error;
+    /** Largest standard error of an intensity, in candela. */
+    double intensity_error;
+} luxfer_gonio_report;
+
+/**
+ * Measures the distribution of count meshes of a scene, whose indices are in the array meshes; of all meshes if count
+ * is 0, where meshes may be NULL. The intensities contain what the meshes hide from each other, reflect and transmit.
+ * Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
+ *
+ * The result is of absolute photometry, states no power and no colour, and its name is that of the first mesh with a
+ * name. Its luminous opening is the box, vertical cylinder or ellipsoid that agrees best with the parts that emit.
+ * Intensities between the angles are interpolated linearly; the stated errors are those of the paths alone. The caller
+ * releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
+ * proportional to planes times angles times samples, seconds with the defaults. luxfer_job_start runs it as a job. Any
+ * thread.
+ * LUXFER_DEGENERATE if no mesh emits light, or if none leaves the meshes, as from a closed room;
+ * LUXFER_INVALID_ARGUMENT if a mesh does not exist, a setting is out of range, or the scene is not valid.
+ */
+luxfer_status luxfer_scene_get_distribution(luxfer_scene *scene,
+                                            const uint32_t *meshes,
+                                            size_t count,
+                                            const luxfer_gonio_params *params,
+                                            luxfer_distribution **distribution,
+                                            luxfer_gonio_report *report,
+                                            size_t size);
 
 /* ==================================================================================================================
  * False colour

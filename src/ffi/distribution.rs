@@ -124,7 +124,7 @@ fn format_of(value: luxfer_distribution_format, bytes: &[u8]) -> Result<Format> 
 }
 
 impl Distribution {
-    fn new(context: &Arc<Context>, file: File) -> Arc<Self> {
+    pub(super) fn new(context: &Arc<Context>, file: File) -> Arc<Self> {
         let File { luminaire, variants, emitters } = file;
         Arc::new(Self { context: context.clone(), luminaire: Arc::new(luminaire), variants, emitters })
     }

@@ -1,9 +1,13 @@
 //! Glare of observers
 //!
 //! Computes the unified glare rating (CIE 117) for observers in a scene. The glare sources are the luminaires of the
-//! scene. The luminance of a luminaire is its intensity towards the eye, divided by the area of its luminous opening as
-//! seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose opening the eye sees
-//! edge-on, have no such area and are not rated.
+//! scene and its emissive meshes. The luminance of a luminaire is its intensity towards the eye, divided by the area of
+//! its luminous opening as seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose
+//! opening the eye sees edge-on, have no such area and are not rated.
+//!
+//! Each connected part of a mesh that emits is a source, as are the single lamps of an emission texture. Its luminance
+//! is the mean over its visible part. Points darker than a tenth of the largest luminance of their material, such as
+//! the glow around lamps in a texture, are not rated.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -32,32 +36,34 @@ pub struct luxfer_observer {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_observer_glare {
-    /// Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the rated luminaires in view, with
-    /// their luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible;
-    /// 19 is the limit for offices. -infinity if no rated luminaire is in view; infinity if one is in view and the
-    /// background is black.
+    /// Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the sources in view, with their
+    /// luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible; 19 is
+    /// the limit for offices. -infinity if no source is in view; infinity if one is in view and the background is
+    /// black.
     pub ugr: f64,
     /// Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi.
     pub background: f64,
     /// Standard error of the field background, in cd/m².
     pub background_error: f64,
-    /// Direct illuminance at the eye, in lux, from all lights that the rating leaves out: luminaires that are not
-    /// rated, point, spot and directional lights, emissive surfaces, and the environment.
+    /// Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires that are not
+    /// rated, of point, spot and directional lights, of the environment, and the glow of emissive meshes.
     pub unrated_lux: f64,
-    /// Solid angle of the visible parts of all rated luminaires in view, in steradians.
+    /// Solid angle of the visible parts of all sources in view, in steradians.
     pub solid_angle: f64,
-    /// Number of rated luminaires in view.
+    /// Number of sources in view: rated luminaires, and luminous parts of emissive meshes.
     pub sources: u32,
-    /// Number of rated luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid.
+    /// Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Parts of
+    /// meshes below a tenth of this range may be missed.
     pub outside_range: u32,
 }
 
 /// Computes the glare ratings of count observers in a scene; the array ratings receives count elements. The parameter
 /// samples is the number of paths per observer for the background, in [16, 16777216], rounded up to a multiple of 16;
-/// 4096 paths suit most rooms. seed is the seed of the paths. The call is synchronous; its time is proportional to
-/// count times samples. observer_stride and rating_stride are the distances between elements in bytes; 0:
-/// sizeof(luxfer_observer), sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also
-/// prepares the scene for tracing. Any thread.
+/// 4096 paths suit most rooms. seed is the seed of the paths, and of the rays that find luminous meshes. The call is
+/// synchronous; its time is proportional to count times samples, and longer in a scene with emissive meshes.
+/// observer_stride and rating_stride are the distances between elements in bytes; 0: sizeof(luxfer_observer),
+/// sizeof(luxfer_observer_glare). The first call after a scene is loaded or changed also prepares the scene for
+/// tracing. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the scene is not valid, a value is out of range, or an observer is not finite, looks
 /// straight up or down, or is inside a luminaire (the message names the observer). In these cases no rating is written.
 #[unsafe(no_mangle)]

@@ -10,6 +10,7 @@ use super::emission::luxfer_emission_params;
 use super::exposures::luxfer_merge_params;
 use super::false_colour::luxfer_false_colour_params;
 use super::features::luxfer_features_params;
+use super::gonio::luxfer_gonio_params;
 use super::guard::guard;
 use super::guides::luxfer_guides_params;
 use super::illuminance::{luxfer_illuminance_grid, luxfer_illuminance_params};
@@ -100,6 +101,8 @@ pub const LUXFER_STRUCT_DEMO_PHOTO_PARAMS: luxfer_struct_type = 27;
 pub const LUXFER_STRUCT_PENDANTS_PARAMS: luxfer_struct_type = 28;
 /// The struct luxfer_merge_params.
 pub const LUXFER_STRUCT_MERGE_PARAMS: luxfer_struct_type = 29;
+/// The struct luxfer_gonio_params.
+pub const LUXFER_STRUCT_GONIO_PARAMS: luxfer_struct_type = 30;
 
 /// Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
 /// struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
@@ -146,6 +149,7 @@ pub unsafe extern "C" fn luxfer_init(
         LUXFER_STRUCT_DEMO_PHOTO_PARAMS => params::init::<luxfer_demo_photo_params>(place.cast(), size),
         LUXFER_STRUCT_PENDANTS_PARAMS => params::init::<luxfer_pendants_params>(place.cast(), size),
         LUXFER_STRUCT_MERGE_PARAMS => params::init::<luxfer_merge_params>(place.cast(), size),
+        LUXFER_STRUCT_GONIO_PARAMS => params::init::<luxfer_gonio_params>(place.cast(), size),
         other => Err(Error::argument(format!("the type of the struct is {other}; it must be a LUXFER_STRUCT_ value"))),
     })
 }

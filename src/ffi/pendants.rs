@@ -14,7 +14,7 @@ use super::image::luxfer_image;
 use super::params::{self, Report, Versioned, flag, versioned};
 use super::pointer::{Out, set_optional};
 use super::rectify::luxfer_rectify;
-use super::scene::{luxfer_scene, mesh_cost};
+use super::scene::luxfer_scene;
 use super::shared_context::Context;
 use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
@@ -444,7 +444,7 @@ pub unsafe extern "C" fn luxfer_scene_add_pendants(
         let places = points::<3>(places, count, 1, MAX_PLACES, "place")?;
         let places: Vec<_> = places.into_iter().map(|place| DVec3::from_array(place).as_vec3()).collect();
         let body = pendant.body()?;
-        let bytes = mesh_cost(&body.mesh()) * count as u64;
+        let bytes = body.mesh().bytes() as u64 * count as u64;
         let (mesh, added) = scene.change(bytes, |scene| {
             let mesh = body.add_to_scene(scene, &places, &Placing { diameter, luminance })?;
             Ok((mesh, scene.materials.len() - 1))

@@ -17,7 +17,7 @@ use crate::image::io;
 use crate::job::{Job, Monitor};
 use crate::quiet;
 use crate::render::World;
-use crate::scene::{Environment, Mesh, Scene, check_light, gltf, surface};
+use crate::scene::{Environment, Scene, check_light, gltf, surface};
 use glam::Vec3;
 use std::cell::RefCell;
 use std::ffi::{c_char, c_void};
@@ -229,14 +229,7 @@ impl gltf::Budget for Charges<'_> {
 /// Memory of a scene's meshes and textures in bytes.
 fn cost(scene: &Scene) -> u64 {
     let textures = scene.textures.iter().map(|t| (t.image.data.len() * size_of::<f32>()) as u64);
-    scene.meshes.iter().map(mesh_cost).chain(textures).sum()
-}
-
-/// Returns the size of a mesh in bytes.
-pub(super) fn mesh_cost(mesh: &Mesh) -> u64 {
-    let uvs = mesh.uvs.iter().map(Vec::len).sum::<usize>();
-    let vectors = mesh.positions.len() + mesh.normals.len() + mesh.triangles.len();
-    (12 * vectors + 8 * uvs + 16 * mesh.colours.len()) as u64
+    scene.meshes.iter().map(|mesh| mesh.bytes() as u64).chain(textures).sum()
 }
 
 /// Creates an empty scene. The caller releases *scene. Any thread.

@@ -150,17 +150,7 @@ impl luxfer_luminaire_params {
         let position = Vec3::from_array(self.position);
         check_place(|| "luminaire.position", position)?;
         let flux = check_range("luminaire.flux", self.flux, 0.0, f64::from(f32::MAX))?;
-        let axis = Vec3::from_array(self.axis).try_normalize().ok_or_else(|| {
-            Error::argument(format!("luminaire.axis is {:?}; it must be finite and not zero", self.axis))
-        })?;
-        let c0 = Vec3::from_array(self.c0).try_normalize().and_then(|c0| {
-            // Refuse a direction that is nearly parallel to the axis, as well as one that is exactly parallel.
-            let across = c0 - axis * c0.dot(axis);
-            across.try_normalize().filter(|_| across.length() > 1e-4)
-        });
-        let c0 = c0.ok_or_else(|| {
-            Error::argument(format!("luminaire.c0 is {:?}; it must be finite and not along the axis", self.c0))
-        })?;
+        let [axis, c0] = axes("luminaire.", self.axis, self.c0)?;
         let colour = colour("luminaire.colour", self.colour)?;
         let factor = if flux > 0.0 { flux / rated } else { 1.0 };
         let colour = colour * (factor / f64::from(luminance(colour))) as f32;
@@ -173,6 +163,22 @@ impl luxfer_luminaire_params {
             self.colour
         )))
     }
+}
+
+/// Returns the unit directions of the axis (γ = 0) and of C = 0, perpendicular to it. `place` precedes the names of the
+/// fields in errors.
+pub(super) fn axes(place: &str, axis: [f32; 3], c0: [f32; 3]) -> Result<[Vec3; 2]> {
+    let unit = Vec3::from_array(axis)
+        .try_normalize()
+        .ok_or_else(|| Error::argument(format!("{place}axis is {axis:?}; it must be finite and not zero")))?;
+    let across = Vec3::from_array(c0).try_normalize().and_then(|c0| {
+        // Refuse a direction that is nearly parallel to the axis, as well as one that is exactly parallel.
+        let across = c0 - unit * c0.dot(unit);
+        across.try_normalize().filter(|_| across.length() > 1e-4)
+    });
+    let across = across
+        .ok_or_else(|| Error::argument(format!("{place}c0 is {c0:?}; it must be finite and not along the axis")))?;
+    Ok([unit, across])
 }
 
 /// Adds a luminaire to a scene: a light whose luminous intensity in each direction is given by the argument

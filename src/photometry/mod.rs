@@ -7,10 +7,11 @@
 //! [`faces`] its triangles. [`presets`] lists requirements of EN 12464-1 for common rooms. [`false_colour`] shows
 //! luminance and illuminance by a scale of colours.
 //!
-//! Two computations are elsewhere: `render::illuminance` computes illuminance, and `render::glare` rates the glare
-//! that the luminaires of a scene cause for observers.
+//! Three computations are elsewhere: `render::illuminance` computes illuminance, `render::glare` rates the glare that
+//! the luminaires and emissive meshes of a scene cause for observers, and `render::gonio` measures the distribution of
+//! emissive meshes.
 //!
-//! Not modelled: spectra and colour rendering; maintenance; bodies of luminaires, and luminance that varies over a
+//! Not modelled: spectra and colour rendering; maintenance; bodies in luminaire files, and luminance that varies over a
 //! luminous face.
 
 mod clock;

@@ -17,7 +17,8 @@
 //! `vicinity` holds the surfaces around the paths, which suffice for most rays. `shared` lets the paths of neighbouring
 //! pixels reuse each other's secondary vertices. `layers` computes further images from the same paths: light path
 //! expressions (`lpe`) and surface attributes (`aov`). [`illuminance`] computes grids and surface maps in lux,
-//! [`glare`] the unified glare rating of observers. `denoise` filters noise and states the error that is left.
+//! [`glare`] the unified glare rating of observers, [`gonio`] the luminous intensity distribution of emissive bodies.
+//! `denoise` filters noise and states the error that is left.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
 //! [`Requirements::left_out`] lists the glass solids and the frosted glass of a scene; in C,
@@ -36,6 +37,7 @@ mod facet;
 mod film;
 mod ggx;
 pub mod glare;
+pub mod gonio;
 pub mod illuminance;
 mod layers;
 mod light;

@@ -403,7 +403,8 @@ impl World {
         !self.is_blocked(ray, |hit| !ends.contains(&hit.triangle) && is_met(hit))
     }
 
-    fn pane(&self, hit: &Hit, direction: Vec3) -> Pane {
+    /// Returns the share of light that passes a surface at a hit, for a ray in `direction`.
+    pub(super) fn pane(&self, hit: &Hit, direction: Vec3) -> Pane {
         let facet = self.facet(hit.triangle);
         let compiled = self.compiled_material(facet);
         if !compiled.lets_light_through {

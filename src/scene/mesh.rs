@@ -39,6 +39,13 @@ impl Mesh {
         self.triangles[triangle].map(|i| self.positions[i as usize])
     }
 
+    /// Returns the size of the mesh in memory, in bytes.
+    pub fn bytes(&self) -> usize {
+        let uvs = self.uvs.iter().map(Vec::len).sum::<usize>();
+        let vectors = self.positions.len() + self.normals.len() + self.triangles.len();
+        12 * vectors + 8 * uvs + 16 * self.colours.len()
+    }
+
     /// Whether the triangles are consistently wound and enclose a volume. In such a mesh every edge is traversed
     /// equally often in both directions. Vertices at equal positions count as one vertex.
     ///

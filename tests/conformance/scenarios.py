@@ -326,6 +326,10 @@ def photometry() -> Scenario:
     s.call("distribution_get_report", lamp, *report("distribution_report"))
     s.call("distribution_get_name", lamp, ROOM, 50, ROOM)
     s.call("distribution_get_intensity", lamp, 0.0, 30.0, ROOM)
+    bodies, settings = array("uint32_t", 1), struct("gonio_params", planes=2, angles=3, samples=16)
+    place, measured = s.new()
+    s.call("scene_get_distribution", s.room(), bodies, 1, settings, place, *report("gonio_report"))
+    s.call("distribution_get_report", measured, *report("distribution_report"))
     s.call("scene_add_luminaire", s.room(), lamp, struct("luminaire_params", flux=900.0), ROOM)
     s.call("scene_add_luminaire", s.room(), lamp, struct("luminaire_params", shape=1), ROOM)
     return s

@@ -37,6 +37,16 @@ def box(albedo: float = 0.5, floor: bool = True) -> luxfer.Scene:
     return scene
 
 
+def add_sheet(scene: luxfer.Scene, glow: float) -> None:
+    """Hangs a square metre into a box. Its left half emits 500 cd/m², its right half that share of it."""
+    texture = scene.add_texture(np.full((1, 2, 3), 1, np.float32) * np.array([1, glow], np.float32)[None, :, None])
+    material = scene.add_material(emission=(500, 500, 500))
+    scene.set_material_texture(material, "emission", texture)
+    corners = [[1, 2.5, 1], [2, 2.5, 1], [2, 2.5, 2], [1, 2.5, 2]]
+    uvs = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], uvs=uvs, name="Sheet", material=material)
+
+
 def panel(flux: float = 3000.0, **params) -> design.Product:
     return design.Product.panel(context(), 0.3, 0.3, flux, watts=flux / 100, rendering=80, **params)
 
@@ -352,14 +362,9 @@ class Checks(Case):
         )
         found = lit.requiring(design.Requirement("rendering", at_least=80), at_most("density", 10)).check()
         self.assertEqual([f.outcome for f in found.findings], ["unknown", "unknown"])
-        # Glare by an emissive surface, which the rating of luminaires leaves out.
+        # The glow of an emissive surface, which the rating leaves out.
         scene = box()
-        scene.add_mesh(
-            [[1, 2.5, 1], [2, 2.5, 1], [2, 2.5, 2], [1, 2.5, 2]],
-            [[0, 1, 2], [0, 2, 3]],
-            name="Sheet",
-            material=scene.add_material(emission=(500, 500, 500)),
-        )
+        add_sheet(scene, 0.05)
         room = design.Room.find(scene, "Floor", "Ceiling")
         lit = replace(project(), room=room, observers=(observers.along_room(room),))
         found = lit.requiring(at_most("glare", 25, "people in the room")).check().findings[0]
@@ -514,14 +519,28 @@ class Solver(Case):
 
     def test_glare_that_is_unknown_is_not_called_impossible(self):
         scene = box()
-        sheet = [[1, 2.5, 1], [2, 2.5, 1], [2, 2.5, 2], [1, 2.5, 2]]
-        glow = scene.add_material(emission=(500, 500, 500))
-        scene.add_mesh(sheet, [[0, 1, 2], [0, 2, 3]], name="Sheet", material=glow)
+        add_sheet(scene, 0.05)
         lit = replace(project(0.5, 1, 16), room=design.Room.find(scene, "Floor", "Ceiling"))
         lit = replace(lit, observers=(observers.along_room(lit.room),))
         found = lit.requiring(at_most("glare", 28, "people in the room")).solve()
         self.assertEqual((found.feasible, found.contradictory, found.rounds), (False, False, 1))
         self.assertIn("cannot be decided: light that the rating leaves out", found.explanation())
+
+    def test_emissive_meshes_are_rated_with_the_luminaires(self):
+        scene = box()
+        add_sheet(scene, 1.0)
+        lit = replace(project(0.5, 2, 256), room=design.Room.find(scene, "Floor", "Ceiling"))
+        lit = replace(lit, observers=(observers.along_room(lit.room),))
+        (parts,) = luxfer.design.responses.respond_glare(scene, lit.luminaires, lit.observers)
+        for dimmers in ((1.0, 1.0), (0.2, 0.6), (0.0, 0.0)):
+            lamps = design.dimmed(lit.luminaires, dimmers)
+            rated = rate(design.lit_scene(scene, lamps), lit.observers[0], 4096)
+            for ugr, rating in zip(parts.ugr(np.array(dimmers)), rated):
+                self.assertAlmostEqual(ugr, rating.ugr, delta=0.5)
+        alone = worst(rate(design.lit_scene(scene, []), lit.observers[0], 4096))
+        self.assertTrue(math.isfinite(alone.ugr) and alone.unrated == 0)
+        found = lit.requiring(at_most("glare", 28, "people in the room"), at_least("mean", 1)).solve()
+        self.assertNotIn("cannot be decided", found.explanation())
 
     def test_the_least_luminaire_of_a_group_keeps_the_smallest_dimmer(self):
         lit = project(0.0, 2, 16)

@@ -10,6 +10,7 @@ namespace luxfer {
 
 using LampsParams = Params<luxfer_lamps_params, LUXFER_STRUCT_LAMPS_PARAMS>;
 using ImportanceParams = Params<luxfer_importance_params, LUXFER_STRUCT_IMPORTANCE_PARAMS>;
+using GonioParams = Params<luxfer_gonio_params, LUXFER_STRUCT_GONIO_PARAMS>;
 using FalseColourParams = Params<luxfer_false_colour_params, LUXFER_STRUCT_FALSE_COLOUR_PARAMS>;
 using LuminaireParams = Params<luxfer_luminaire_params, LUXFER_STRUCT_LUMINAIRE_PARAMS>;
 using PendantsParams = Params<luxfer_pendants_params, LUXFER_STRUCT_PENDANTS_PARAMS>;
@@ -167,6 +168,23 @@ inline Result<std::uint32_t> add_luminaire(const Scene &scene, const Distributio
     return detail::to_result(scene.context().get(), status, index);
 }
 
+/// A distribution measured from meshes, its errors, and the place of its luminaire.
+struct MeasuredDistribution {
+    Distribution distribution;
+    luxfer_gonio_report report = {};
+};
+
+/// Measures the distribution of meshes of a scene, given by their indices; of all meshes if none is given.
+inline Result<MeasuredDistribution> measure_distribution(const Scene &scene, Span<const std::uint32_t> meshes = {},
+                                                         const luxfer_gonio_params &params = GonioParams()) {
+    luxfer_distribution *made = nullptr;
+    luxfer_gonio_report report = {};
+    const luxfer_status status = luxfer_scene_get_distribution(scene.get(), meshes.data(), meshes.size(), &params,
+                                                               &made, &report, sizeof report);
+    return detail::to_result(scene.context().get(), status,
+                             MeasuredDistribution{Distribution(scene.context(), made), report});
+}
+
 /// Finds the bodies of the lamps that a mask marks, numbered from the top. If `view` is empty, the camera is that of
 /// `params`. `suspensions` has x and y of the pixels where suspensions meet the ceiling.
 inline Result<std::vector<luxfer_pendant>> find_pendants(const Context &context, const Image &photo, const Image &mask,
@@ -221,7 +239,7 @@ inline Result<std::array<double, 3>> colour_of_temperature(const Context &contex
     return detail::to_result(context.get(), status, rgb);
 }
 
-/// The unified glare rating of each observer in a scene, from its luminaires.
+/// The unified glare rating of each observer in a scene, from its luminaires and emissive meshes.
 inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span<const luxfer_observer> observers,
                                                         std::uint32_t samples = 4096, std::uint64_t seed = 1) {
     std::vector<luxfer_observer_glare> ratings(observers.size());

@@ -56,6 +56,7 @@ LUXFER_STRUCT_RENDER_PART = 26
 LUXFER_STRUCT_DEMO_PHOTO_PARAMS = 27
 LUXFER_STRUCT_PENDANTS_PARAMS = 28
 LUXFER_STRUCT_MERGE_PARAMS = 29
+LUXFER_STRUCT_GONIO_PARAMS = 30
 LUXFER_VIEW_BOTTOM_UP = 1
 LUXFER_SAMPLE_U8 = 0
 LUXFER_SAMPLE_U16 = 1
@@ -1345,6 +1346,35 @@ class luxfer_observer_glare(Structure):
     result = types.ObserverGlare
 
 
+class luxfer_gonio_params(Structure):
+    """Settings of luxfer_scene_get_distribution: the directions, the paths and the axes of the luminaire."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("planes", c_uint32),
+        ("angles", c_uint32),
+        ("samples", c_uint32),
+        ("seed", c_uint64),
+        ("axis", c_float * 3),
+        ("c0", c_float * 3),
+    ]
+    struct_type = LUXFER_STRUCT_GONIO_PARAMS
+
+
+class luxfer_gonio_report(Structure):
+    """Errors of a distribution that luxfer_scene_get_distribution has measured, and the place of its
+    luminaire."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("position", c_float * 3),
+        ("flux", c_double),
+        ("flux_error", c_double),
+        ("intensity_error", c_double),
+    ]
+    result = types.GonioReport
+
+
 class luxfer_false_colour_params(Structure):
     """Settings of a false colour image."""
 
@@ -1790,6 +1820,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
     "luxfer_scene_get_glare": (c_int32, [("scene", POINTER(luxfer_scene)), ("observers", POINTER(luxfer_observer)), ("count", c_size_t), ("observer_stride", c_size_t), ("samples", c_uint32), ("seed", c_uint64), ("ratings", POINTER(luxfer_observer_glare)), ("rating_stride", c_size_t)]),
+    "luxfer_scene_get_distribution": (c_int32, [("scene", POINTER(luxfer_scene)), ("meshes", POINTER(c_uint32)), ("count", c_size_t), ("params", POINTER(luxfer_gonio_params)), ("distribution", POINTER(POINTER(luxfer_distribution))), ("report", POINTER(luxfer_gonio_report)), ("size", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
     "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_size_t), ("max_drive", c_double), ("rgb", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),

@@ -16,6 +16,7 @@ from .candidate import SurfaceCandidate, candidates_of
 from .image import Image, image_of
 from .types import (
     CameraParams,
+    GonioReport,
     MaterialParams,
     MeshInfo,
     Pendant,
@@ -35,12 +36,12 @@ if TYPE_CHECKING:
     from .context import Context
     from .image import ImageLike
     from .photometry import Distribution
-    from .types import LightParams, LuminaireParams, SceneLoadParams
+    from .types import GonioParams, LightParams, LuminaireParams, SceneLoadParams
 
 #: The entry that intersect() returns for each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
 HIT = np.dtype([("t", "f4"), ("mesh", "u4"), ("triangle", "u4"), ("u", "f4"), ("v", "f4")])
 
-#: The entry that glare() returns for each observer; ugr is -inf without a luminaire in view.
+#: The entry that glare() returns for each observer; ugr is -inf without a rated light in view.
 GLARE = np.dtype(
     [(name, "f8") for name in ("ugr", "background", "background_error", "unrated_lux", "solid_angle")]
     + [("sources", "u4"), ("outside_range", "u4")]
@@ -331,9 +332,9 @@ class Scene(Handle):
     def glare(
         self, positions: ArrayLike, directions: ArrayLike, samples: int = 4096, seed: int = 1
     ) -> NDArray[Any]:
-        """Rates the glare of the scene's luminaires (UGR) for observers with positions (n, 3) and lines of sight (n,
-        3). Returns a structured array with the fields ugr, background, background_error, unrated_lux, solid_angle,
-        sources, outside_range.
+        """Rates the glare of the scene's luminaires and emissive meshes (UGR) for observers with positions (n, 3) and
+        lines of sight (n, 3). Returns a structured array with the fields ugr, background, background_error,
+        unrated_lux, solid_angle, sources, outside_range.
 
         >>> Scene.demo(context, "target-room").glare([[3, 1.2, 1]], [[0, 0, 1]], samples=16)["sources"].item()
         0
@@ -346,6 +347,29 @@ class Scene(Handle):
         out = _arrays.pointer(ratings, _abi.luxfer_observer_glare)
         self._call("get_glare", pointer, len(observers), 0, samples, seed, out, 0)
         return ratings
+
+    def distribution(
+        self, meshes: ArrayLike = (), **params: Unpack[GonioParams]
+    ) -> tuple[Distribution, GonioReport]:
+        """Measures the luminous intensity of meshes far away from them, by their indices; of all meshes if none is
+        given. Returns the distribution, and a report with its errors and the position of its luminaire.
+
+        >>> scene = Scene(context)
+        >>> lamp = scene.add_material(emission=(100, 100, 100))
+        >>> corners = [[0, 2, 0], [1, 2, 0], [1, 2, 1], [0, 2, 1]]
+        >>> mesh = scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], material=lamp)
+        >>> distribution, report = scene.distribution([mesh], planes=4, angles=19, samples=64)
+        >>> round(distribution.intensity(0, 0)), [round(p, 3) for p in report.position]
+        (100, [0.5, 2.0, 0.5])
+        """
+        from .photometry import Distribution
+
+        settings = _params.fill(_abi.luxfer_gonio_params, params, [])
+        indices = np.ascontiguousarray(meshes, np.uint32).ravel()
+        place = _arrays.pointer(indices, ctypes.c_uint32) if indices.size else None
+        pointer, report = POINTER(_abi.luxfer_distribution)(), _abi.luxfer_gonio_report()
+        self._call("get_distribution", place, indices.size, settings, pointer, report, ctypes.sizeof(report))
+        return Distribution._adopt(self.context, pointer), cast(GonioReport, _params.report(report))
 
     def requirements(self, error: float = 0.01) -> Requirements:
         """The features that the scene requires of a renderer. Its field bounces is the number of bounces beyond which

@@ -2346,24 +2346,61 @@ class ObserverGlare:
     change in later versions."""
 
     ugr: float
-    """Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the rated luminaires in view,
-    with their luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is
-    imperceptible; 19 is the limit for offices. -infinity if no rated luminaire is in view; infinity if one is
-    in view and the background is black."""
+    """Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the sources in view, with their
+    luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible; 19
+    is the limit for offices. -infinity if no source is in view; infinity if one is in view and the background
+    is black."""
     background: float
     """Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi."""
     background_error: float
     """Standard error of the field background, in cd/m²."""
     unrated_lux: float
-    """Direct illuminance at the eye, in lux, from all lights that the rating leaves out: luminaires that are
-    not rated, point, spot and directional lights, emissive surfaces, and the environment."""
+    """Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires that are
+    not rated, of point, spot and directional lights, of the environment, and the glow of emissive meshes."""
     solid_angle: float
-    """Solid angle of the visible parts of all rated luminaires in view, in steradians."""
+    """Solid angle of the visible parts of all sources in view, in steradians."""
     sources: int
-    """Number of rated luminaires in view."""
+    """Number of sources in view: rated luminaires, and luminous parts of emissive meshes."""
     outside_range: int
-    """Number of rated luminaires whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is
-    valid."""
+    """Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Parts
+    of meshes below a tenth of this range may be missed."""
+
+
+class GonioParams(TypedDict, total=False):
+    """Settings of luxfer_scene_get_distribution: the directions, the paths and the axes of the luminaire."""
+
+    planes: int
+    """Number of C planes, in [1, 360], at equal angles around the axis; default 24. A single plane, C = 0,
+    holds for all directions around the axis."""
+    angles: int
+    """Number of vertical angles gamma in each C plane, in [2, 361], at equal angles from 0 to 180 degrees;
+    default 73."""
+    samples: int
+    """Paths per direction, in [16, 16777216], rounded up to a multiple of 16; default 1024."""
+    seed: int
+    """Seed of the paths; default 1."""
+    axis: Sequence[float]
+    """Direction of the luminaire's axis, in which gamma is 0; any length but 0; default (0, -1, 0): down."""
+    c0: Sequence[float]
+    """Direction of the half-plane C = 0; it must not be parallel to axis, and only its component perpendicular
+    to axis counts. Default (1, 0, 0). For an axis that points down, C grows anticlockwise as seen from
+    above."""
+
+
+@dataclass(frozen=True)
+class GonioReport:
+    """Errors of a distribution that luxfer_scene_get_distribution has measured, and the place of its
+    luminaire."""
+
+    position: tuple[float, float, float]
+    """Centre of the luminous opening in metres, in the coordinates of the scene: a luminaire with this
+    position, and with the axis and c0 of the settings, takes the place of the meshes."""
+    flux: float
+    """Luminous flux in lumens."""
+    flux_error: float
+    """Standard error of the flux, in lumens."""
+    intensity_error: float
+    """Largest standard error of an intensity, in candela."""
 
 
 class FalseColourParams(TypedDict, total=False):

@@ -16,27 +16,15 @@ pub struct LuminousSurfaces {
 }
 
 impl LuminousSurfaces {
-    /// Finds the lamps: emissive triangles with a corner at the same position belong to one lamp, and so do all faces
-    /// of a luminaire. `pieces` is the number of pieces into which the triangles are divided.
+    /// Finds the lamps, as [`connected`] defines them. `pieces` is the number of pieces into which the triangles are
+    /// divided.
     pub fn new(emitters: &Emitters, pieces: usize) -> Result<Self> {
-        let count = emitters.emitters.len();
-        let mut corners = try_with_capacity(3 * count)?;
-        for (index, emitter) in emitters.emitters.iter().enumerate() {
-            corners.extend(emitter.corners.map(|corner| (corner.to_array().map(f32::to_bits), index as u32)));
-        }
-        corners.sort_unstable();
-        let mut parents = try_collect(0..count as u32)?;
-        let touching = corners.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
-        let of_one_luminaire = (1..count).filter(|&i| emitters.are_of_one_luminaire([i - 1, i]));
-        for pair in touching.chain(of_one_luminaire.map(|i| [i as u32 - 1, i as u32])) {
-            let [a, b] = pair.map(|emitter| root(&mut parents, emitter));
-            parents[a.max(b) as usize] = a.min(b);
-        }
+        let roots = connected(emitters)?;
         // Number the lamps in the order of their first pieces. A set of connected triangles without pieces is dark and
         // not a lamp.
-        let (mut of_roots, mut lamps) = (try_vec(count, u32::MAX)?, 0);
+        let (mut of_roots, mut lamps) = (try_vec(roots.len(), u32::MAX)?, 0);
         let of_pieces = try_collect((0..pieces).map(|piece| {
-            let lamp = &mut of_roots[root(&mut parents, emitters.emitter_of(piece) as u32) as usize];
+            let lamp = &mut of_roots[roots[emitters.emitter_of(piece)] as usize];
             if *lamp == u32::MAX {
                 (*lamp, lamps) = (lamps, lamps + 1);
             }
@@ -64,7 +52,29 @@ impl LuminousSurfaces {
     }
 }
 
-/// Union-find: returns the representative of the set (the lamp) that contains `emitter`. Shortens the chain of
+/// Returns, for each emitter, the first emitter of its connected surface. Emissive triangles with a corner at the same
+/// position belong to one surface, and so do all faces of a luminaire.
+pub fn connected(emitters: &Emitters) -> Result<Vec<u32>> {
+    let count = emitters.emitters.len();
+    let mut corners = try_with_capacity(3 * count)?;
+    for (index, emitter) in emitters.emitters.iter().enumerate() {
+        corners.extend(emitter.corners.map(|corner| (corner.to_array().map(f32::to_bits), index as u32)));
+    }
+    corners.sort_unstable();
+    let mut parents = try_collect(0..count as u32)?;
+    let touching = corners.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| [pair[0].1, pair[1].1]);
+    let of_one_luminaire = (1..count).filter(|&i| emitters.are_of_one_luminaire([i - 1, i]));
+    for pair in touching.chain(of_one_luminaire.map(|i| [i as u32 - 1, i as u32])) {
+        let [a, b] = pair.map(|emitter| root(&mut parents, emitter));
+        parents[a.max(b) as usize] = a.min(b);
+    }
+    for emitter in 0..count as u32 {
+        parents[emitter as usize] = root(&mut parents, emitter);
+    }
+    Ok(parents)
+}
+
+/// Union-find: returns the representative of the set (the surface) that contains `emitter`. Shortens the chain of
 /// `parents` on the way.
 fn root(parents: &mut [u32], mut emitter: u32) -> u32 {
     while parents[emitter as usize] != emitter {

@@ -21,6 +21,7 @@ mod tree;
 
 pub use bounds::{Bounds, Receiver};
 pub use lamp_visibility::LampVisibility;
+pub use luminous_surfaces::connected;
 
 use super::contribution::LightSource;
 use super::emissive::{Emitters, mean_channel};
@@ -131,6 +132,13 @@ impl Lights {
     /// Returns the number of pieces of emissive surfaces.
     pub fn pieces(&self) -> usize {
         self.inventory.pieces
+    }
+
+    /// Returns the corners of the boxes around the lit parts of the pieces, in world coordinates.
+    pub fn piece_corners(&self) -> impl Iterator<Item = Vec3> {
+        let of_box = |b: &Bounds| [b.low.to_array(), b.high.to_array()];
+        let boxes = self.inventory.bounds[..self.inventory.pieces].iter().map(of_box);
+        boxes.flat_map(|ends| (0..8).map(move |i| Vec3::from_array([0, 1, 2].map(|axis| ends[(i >> axis) & 1][axis]))))
     }
 
     /// Samples a light for a receiver: `u` selects the light. The remainder of `u`, rescaled to `[0, 1)`, and `v`

@@ -3,7 +3,8 @@
 use super::*;
 use crate::exec::Pool;
 use crate::photometry::Luminaire;
-use crate::render::glare::{Eye, Params, Rating, rate};
+use crate::photometry::glare::position_index;
+use crate::render::glare::{Eye, Origin, Params, Rating, rate};
 use crate::rng;
 use std::f64::consts::PI;
 
@@ -184,7 +185,7 @@ fn hidden_parts_do_not_glare() {
         *distribution = 1;
     }
     let partly = rated(hiding, EYE, 16).sources[0];
-    assert!(partly.light == 0 && partly.solid_angle < 0.8 * whole.solid_angle, "{partly:?} {whole:?}");
+    assert!(partly.origin == Origin::Light(0) && partly.solid_angle < 0.8 * whole.solid_angle, "{partly:?} {whole:?}");
     // A panel in the plane of the ceiling is visible as a whole.
     let flush = rated(room(panel(), &[Vec3::new(3.0, 3.0, 4.5)]), EYE, 16).sources[0];
     let distance_squared = 9.0 + 1.8f64 * 1.8;
@@ -202,15 +203,10 @@ fn limits_have_clear_answers() {
     black.materials[0] = matt(0.0, 0.0);
     let black = rated(black, EYE, 64);
     assert!(black.ugr == f64::INFINITY && black.background == 0.0, "{black:?}");
-    // A luminaire without dimensions and an emissive surface are not rated. Instead, the illuminance that they cause at
-    // the eye is reported.
+    // A luminaire without dimensions is not rated. Instead, the illuminance that it causes at the eye is reported.
     let direct = 3000.0 / PI * 1.5 * 3.0 / 11.25f64.powi(2);
     let point = rated(room(Luminaire { size: [0.0; 3], ..panel() }, &[at]), EYE, 64);
     assert!(point.sources.is_empty() && (point.unrated_lux / direct - 1.0).abs() < 2e-3, "{point:?}");
-    let mut shining = room(panel(), &[]);
-    shining.materials.push(matt(0.0, 500.0));
-    shining.meshes.push(Mesh::parallelogram(Vec3::new(2.0, 2.5, 3.0), Vec3::X, Vec3::Z, 1));
-    assert!(rated(shining, EYE, 1024).unrated_lux > 1.0);
     // A panel seen edge-on has no projected area and is not among the sources. Its light does not count as unrated,
     // even if it shines towards the eye.
     let even = Luminaire { gammas: vec![0.0, 180.0], candela: vec![300.0; 2], ..panel() };
@@ -227,6 +223,123 @@ fn limits_have_clear_answers() {
     for direction in [Vec3::Y, Vec3::ZERO, Vec3::splat(f32::NAN)] {
         assert!(refused(Eye { direction, ..EYE }).contains("direction"), "{direction}");
     }
+}
+
+/// Returns the solid angle of a rectangle `a × b` at distance `c` from a point on the normal of one of its corners.
+fn corner_solid_angle(a: f64, b: f64, c: f64) -> f64 {
+    (a * b / (c * (a * a + b * b + c * c).sqrt())).atan()
+}
+
+/// A room in which one mesh emits light and reflects none.
+fn shining_room(mesh: Mesh, luminance: f32) -> Scene {
+    let mut scene = room(panel(), &[]);
+    scene.materials.push(Material { double_sided: false, ..matt(0.0, luminance) });
+    scene.meshes.push(Mesh { material: 1, ..mesh });
+    scene
+}
+
+/// A square panel of 0.3 m as a mesh and as a luminaire from a file, 3 m ahead and 1.5 m above the eye, where its size
+/// changes the position index and the solid angle of CIE 117 by less than 0.3 %.
+#[test]
+fn a_panel_as_a_mesh_rates_as_the_panel_of_a_file() {
+    let side = 0.3f32;
+    let file = Luminaire::lambertian("panel", 800.0, [f64::from(side), f64::from(side), 0.0]);
+    let at = Vec3::new(3.0, 2.7, 4.5);
+    let of_file = rated(room(file, &[at]), EYE, 1 << 14);
+    let luminance = 800.0 / PI / f64::from(side * side);
+    let corner = at - Vec3::new(side / 2.0, 0.0, side / 2.0);
+    let mesh = Mesh::parallelogram(corner, Vec3::X * side, Vec3::Z * side, 0);
+    let of_mesh = rated(shining_room(mesh, luminance as f32), EYE, 1 << 14);
+    let ([a], [b]) = (&of_file.sources[..], &of_mesh.sources[..]) else { panic!("{of_file:?} {of_mesh:?}") };
+    assert_eq!((a.origin, b.origin), (Origin::Light(0), Origin::Mesh(6)));
+    assert!(
+        (b.luminance / luminance - 1.0).abs() < 1e-5 && (b.luminance / a.luminance - 1.0).abs() < 2e-3,
+        "{a:?} {b:?}"
+    );
+    // The middle of the panel's near edge lies 1.5 m above the eye and 2.85 m ahead of it.
+    let half = f64::from(side) / 2.0;
+    let exact = 2.0 * (corner_solid_angle(half, 3.0 + half, 1.5) - corner_solid_angle(half, 3.0 - half, 1.5));
+    assert!((b.solid_angle / exact - 1.0).abs() < 0.01, "{b:?} {exact}");
+    // The position index is that of the middle of the solid angle, a little nearer than the middle of the panel. Add up
+    // the directions to 100 × 100 cells, weighted by their solid angles cos γ / r².
+    let cell = |i: usize| half * ((i % 100) as f64 / 50.0 - 0.99);
+    let cells = (0..10_000).map(|i| DVec3::new(cell(i), 1.5, cell(i / 100) - 3.0));
+    let middle = cells.map(|d| d / d.length().powi(4)).sum::<DVec3>();
+    let index = position_index(middle);
+    assert!((b.position_index / index - 1.0).abs() < 1e-3, "{b:?} {index}");
+    assert!((b.position_index / a.position_index - 1.0).abs() < 3e-3, "{a:?} {b:?}");
+    let error = of_file.background_error.hypot(of_mesh.background_error);
+    assert!((of_file.background - of_mesh.background).abs() < 4.0 * error, "{of_file:?} {of_mesh:?}");
+    let noise = 8.0 / 10f64.ln() * (4.0 * error / of_mesh.background + 0.015);
+    assert!((of_mesh.ugr - of_file.ugr).abs() < noise && noise < 0.4, "{} {} ± {noise}", of_mesh.ugr, of_file.ugr);
+    assert_eq!((of_mesh.unrated_lux, of_mesh.outside_range()), (0.0, 0));
+    // The back of the panel is dark.
+    let mut turned = Mesh::parallelogram(corner, Vec3::X * side, Vec3::Z * side, 0);
+    turned.triangles.iter_mut().for_each(|triangle| triangle.swap(0, 1));
+    assert!(rated(shining_room(turned, 1000.0), EYE, 64).sources.is_empty());
+}
+
+/// A sphere of radius R at distance d has the solid angle 2π (1 - √(1 - R²/d²)) and its own luminance.
+#[test]
+fn a_sphere_of_uniform_radiance_has_its_closed_form() {
+    let centre = Vec3::new(3.0, 2.2, 4.5);
+    let squared = (centre - EYE.position).as_dvec3().length_squared();
+    for diameter in [0.15, 0.4, 1.2] {
+        let exact = 2.0 * PI * (1.0 - (1.0 - (diameter / 2.0f64).powi(2) / squared).sqrt());
+        let scene = shining_room(ball(centre, diameter), 3000.0);
+        let whole = rated(scene.clone(), EYE, 64);
+        let [source] = whole.sources[..] else { panic!("{whole:?}") };
+        assert!((source.luminance / 3000.0 - 1.0).abs() < 1e-5, "{source:?}");
+        assert!((source.solid_angle / exact - 1.0).abs() < 0.015, "{diameter}: {source:?} {exact}");
+        // The middle is seen straight ahead and up, at the angle σ with tan σ = 1 / 3.
+        let sigma = (1.0f64 / 3.0).atan().to_degrees();
+        let index = (33.98e-3 * sigma + 21e-5 * sigma * sigma).exp();
+        assert!((source.position_index / index - 1.0).abs() < 0.01, "{source:?} {index}");
+        // A screen hides the half to the left of the middle.
+        let mut screened = scene.clone();
+        screened.meshes.push(Mesh::parallelogram(Vec3::new(1.0, 0.5, 6.5), Vec3::X * 2.0, Vec3::Y * 2.4, 0));
+        let half = rated(screened, EYE, 64);
+        let [left] = half.sources[..] else { panic!("{half:?}") };
+        assert!((left.solid_angle / exact - 0.5).abs() < 0.015 && left.luminance == source.luminance, "{left:?}");
+        // A thin bar in front of the ball does not make two sources of it.
+        let mut barred = scene;
+        barred.meshes.push(Mesh::parallelogram(Vec3::new(2.99, 0.5, 6.5), Vec3::X * 0.02, Vec3::Y * 2.4, 0));
+        assert_eq!(rated(barred, EYE, 64).sources.len(), 1);
+    }
+}
+
+/// An emission texture on one mesh holds three lamps and a glow around them.
+#[test]
+fn lamps_of_a_texture_are_sources_of_their_own() {
+    let texture = Image::from_fn(32, 32, |x, y| match (x / 4, y / 4) {
+        (1, 1) | (5, 1) => [1.0; 3],
+        (3, 5) => [0.5; 3],
+        _ => [0.01; 3],
+    });
+    let sheet = Mesh::parallelogram(Vec3::new(2.0, 2.9, 3.0), Vec3::X * 2.0, Vec3::Z * 2.0, 0);
+    let mut scene = shining_room(sheet, 8000.0);
+    scene.materials[1].emission_texture = Some(TextureRef::new(0));
+    scene.textures.push(Texture::new("lamps", texture.unwrap()));
+    let rating = rated(scene.clone(), EYE, 1024);
+    let mut luminances: Vec<f64> = rating.sources.iter().map(|source| source.luminance).collect();
+    luminances.sort_by(f64::total_cmp);
+    assert_eq!(luminances.len(), 3, "{rating:?}");
+    assert!(luminances.iter().zip([4000.0, 8000.0, 8000.0]).all(|(l, want)| (l / want - 1.0).abs() < 1e-5));
+    // The lamps have 3/64 of the sheet. The rest emits 80 cd/m², which the rating leaves out: its illuminance at the
+    // eye is at most 80 times the solid angle of the sheet.
+    let projected = |light: f32| {
+        let mut plain = scene.clone();
+        (plain.materials[1].emission, plain.materials[1].emission_texture) = (Vec3::splat(light), None);
+        rated(plain, EYE, 1024).sources[0].solid_angle
+    };
+    assert!(rating.unrated_lux > 0.5 * 80.0 * 0.4 * projected(1.0) && rating.unrated_lux < 80.0 * projected(1.0));
+    // Two meshes that do not touch are two sources, and a mesh that is behind the eye is none.
+    let mut two = shining_room(ball(Vec3::new(2.0, 2.2, 4.5), 0.3), 3000.0);
+    two.meshes.push(Mesh { material: 1, ..ball(Vec3::new(3.0, 2.0, 7.9), 0.1) });
+    let one = rated(two.clone(), EYE, 64).sources;
+    two.meshes.push(Mesh { material: 1, ..ball(Vec3::new(4.0, 2.2, 4.5), 0.3) });
+    let both = rated(two, EYE, 64).sources;
+    assert_eq!((one.len(), both.len(), both[0].origin, both[1].origin), (1, 2, Origin::Mesh(6), Origin::Mesh(8)));
 }
 
 /// The picture of a room shows its luminaires, so the rating of the picture agrees with the rating computed from the

@@ -9,6 +9,7 @@ mod faces;
 mod far;
 mod film;
 mod glare;
+mod gonio;
 mod illuminance;
 mod irradiance;
 mod lamp_visibility;
@@ -25,6 +26,8 @@ use super::*;
 use crate::error::Error;
 use crate::image::Image;
 use crate::job::Monitor;
+use crate::photometry::faces::{Emits, Faces};
+use crate::photometry::opening::Opening;
 use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, Texture, TextureRef};
 use glam::DVec3;
 use std::sync::Arc;
@@ -32,6 +35,14 @@ use std::sync::Arc;
 /// A diffuse material without a reflecting top layer.
 fn matt(albedo: f32, emission: f32) -> Material {
     Material { ior: 1.0, emission: Vec3::splat(emission), ..Material::diffuse("matt", Vec3::splat(albedo)) }
+}
+
+/// A ball of 1280 triangles. Its projected area is that of the sphere within 0.08 %.
+fn ball(centre: Vec3, diameter: f64) -> Mesh {
+    let opening = Opening::Ellipsoid(DVec3::splat(diameter));
+    let faces = Faces::new(&opening, Emits { forwards: true, backwards: true }, 0.0);
+    let positions = faces.points.iter().map(|p| centre + p.as_vec3()).collect();
+    Mesh { positions, triangles: faces.triangles, ..Mesh::default() }
 }
 
 /// A closed sphere whose triangles face its centre.

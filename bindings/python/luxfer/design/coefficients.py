@@ -25,7 +25,7 @@ from .areas import Area, Patch, thinned
 from .constraints import Model
 from .luminaires import Luminaire, Product
 from .motif import extents, is_wide
-from .responses import GlareResponse, Response, respond_all
+from .responses import GlareResponse, Response, glare_parts, respond_all
 
 if TYPE_CHECKING:
     from .motif import Placed
@@ -150,6 +150,8 @@ class Coefficients:
     """By the names of areas."""
     veils: dict[str, NDArray[np.float64]]
     """Luminance of the background (eyes, luminaires), by the names of observers."""
+    others: dict[str, NDArray[np.float64]]
+    """Glare sources and background of the room without luminaires (2, eyes), by the names of observers."""
     observers: Sequence[Observers]
     below: float
     maintenance: float
@@ -165,7 +167,9 @@ class Coefficients:
         ]
         responses = {n: replace(r, matrix=r.matrix @ mix) for n, r in self.responses.items()}
         glare = {
-            o.name: GlareResponse(o, _sources(self.room, one, luminaires, o)[0], self.veils[o.name] @ mix)
+            o.name: GlareResponse(
+                o, _sources(self.room, one, luminaires, o)[0], self.veils[o.name] @ mix, *self.others[o.name]
+            )
             for o in self.observers
         }
         return Model(luminaires, responses, glare, self.maintenance, self.room.floor_area)
@@ -205,7 +209,8 @@ def measure(
             direct[:, columns] = _sources(room, kinds[number], luminaires[columns], o)[1]
         rest = np.maximum(seen.matrix - direct, INDIRECT * seen.matrix)
         veils[o.name] = np.maximum(rest, 1e-9) / math.pi
-    return Coefficients(room, kinds, grids, len(luminaires), responses, veils, observers, below, maintenance)
+    others = {o.name: glare_parts(room.scene, o.positions, _views(o), seed + 2) for o in observers}
+    return Coefficients(room, kinds, grids, len(luminaires), responses, veils, others, observers, below, maintenance)
 
 
 def _places(side: float, half: float) -> NDArray[np.float64]:

@@ -89,12 +89,14 @@ class Model:
     def _glare(self, r: Requirement, margin: float) -> Limits:
         response = self.glare[r.area]
         bound = 10 ** ((r.limit - margin) / UGR_FACTOR)
-        seen = (response.sources > 0).any(axis=1)
-        scale = bound * np.maximum(response.background[seen].sum(axis=1), 1e-300)[:, None]
+        seen = (response.sources > 0).any(axis=1) | (response.other_sources > 0)
+        most = response.background.sum(axis=1) + response.other_background
+        scale = bound * np.maximum(most[seen], 1e-300)
+        constant = UGR_SCALE * response.other_sources - bound * response.other_background
         return Limits(
-            2 * UGR_SCALE * response.sources[seen] / scale,
-            -bound * response.background[seen] / scale,
-            np.zeros(int(seen.sum())),
+            2 * UGR_SCALE * response.sources[seen] / scale[:, None],
+            -bound * response.background[seen] / scale[:, None],
+            constant[seen] / scale,
         )
 
 

@@ -69,13 +69,13 @@ class Rating:
     """The glare of one observer."""
 
     ugr: float
-    """Unified glare rating; -inf without a luminaire in view."""
+    """Unified glare rating; -inf without a glare source in view."""
     background: Estimate
     """Luminance of the background in cd/m²."""
     unrated: float
     """Direct illuminance at the eye, in lux, by lights that the rating leaves out."""
     outside_range: int
-    """Number of luminaires in view that are too small or too large for CIE 117."""
+    """Number of sources in view that are too small or too large for CIE 117."""
 
     def probability_at_most(self, limit: float) -> float:
         """Confidence that the rating is at most the limit. It falls as the background grows."""

@@ -3,7 +3,7 @@
 Light is linear in the flux of the luminaires, so one set of paths for each point measures its light from all of them
 at once (the library's Lamps), and every choice of dimmers is then a product of a matrix and a vector. The unified
 glare rating of CIE 117 is not linear, but its parts are: the sum over luminaires is quadratic in the dimmers without
-mixed terms, and the luminance of the background is linear.
+mixed terms, and the luminance of the background is linear. The emissive meshes of the scene are a constant part.
 """
 
 from __future__ import annotations
@@ -63,10 +63,15 @@ class GlareResponse:
     """L² ω / p² (observers, luminaires) of each luminaire at full power."""
     background: NDArray[np.float64]
     """Luminance of the background in cd/m² (observers, luminaires) by each luminaire at full power."""
+    other_sources: NDArray[np.float64]
+    """L² ω / p² (observers) of the emissive meshes of the scene."""
+    other_background: NDArray[np.float64]
+    """Luminance of the background in cd/m² (observers) by all other light of the scene."""
 
     def ugr(self, dimmers: NDArray[np.float64]) -> NDArray[np.float64]:
         """The unified glare rating of each observer for dimmers."""
-        total, veil = self.sources @ dimmers**2, self.background @ dimmers
+        total = self.sources @ dimmers**2 + self.other_sources
+        veil = self.background @ dimmers + self.other_background
         with np.errstate(divide="ignore", invalid="ignore"):
             return np.where(total > 0, UGR_FACTOR * np.log10(UGR_SCALE * total / veil), -np.inf)
 
@@ -123,16 +128,24 @@ def _goals(lit: Scene, count: int, grids: list[dict], paths: int, seed: int) -> 
 def respond_glare(
     scene: Scene, luminaires: Sequence[Luminaire], observers: Sequence[Observers], seed: int = 1
 ) -> list[GlareResponse]:
-    """The parts of glare, from one scene for each luminaire alone."""
+    """The parts of glare, from one scene for each luminaire alone, and one with none."""
     eyes = np.concatenate([o.positions for o in observers])
     views = np.concatenate([o.directions for o in observers])
-    sources, veils = np.zeros((len(eyes), len(luminaires))), np.zeros((len(eyes), len(luminaires)))
+    other = glare_parts(lit_scene(scene, []), eyes, views, seed + len(luminaires))
+    parts = np.zeros((2, len(eyes), len(luminaires)))
     for index, lamp in enumerate(dimmed(luminaires, [1.0] * len(luminaires))):
-        ratings = lit_scene(scene, [lamp]).glare(eyes, views, GLARE_SAMPLES, seed + index)
-        veils[:, index] = ratings["background"]
-        seen = np.isfinite(ratings["ugr"])
-        sources[seen, index] = 10 ** (ratings["ugr"][seen] / UGR_FACTOR) * ratings["background"][seen] / UGR_SCALE
+        both = glare_parts(lit_scene(scene, [lamp]), eyes, views, seed + index)
+        parts[:, :, index] = np.maximum(both - other, 0)
     ends = np.cumsum([len(o.positions) for o in observers])[:-1]
-    parts = zip(observers, np.split(sources, ends), np.split(veils, ends))
-    return [GlareResponse(o, s, b) for o, s, b in parts]
+    split = [np.split(part, ends) for part in (*parts, *other)]
+    return [GlareResponse(o, *found) for o, *found in zip(observers, *split)]
 
+
+def glare_parts(
+    scene: Scene, eyes: NDArray[np.float64], views: NDArray[np.float64], seed: int
+) -> NDArray[np.float64]:
+    """L² ω / p² of all sources in view of each eye, and the luminance of its background: (2, eyes)."""
+    ratings = scene.glare(eyes, views, GLARE_SAMPLES, seed)
+    sources, seen = np.zeros(len(eyes)), np.isfinite(ratings["ugr"])
+    sources[seen] = 10 ** (ratings["ugr"][seen] / UGR_FACTOR) * ratings["background"][seen] / UGR_SCALE
+    return np.stack([sources, ratings["background"]])

@@ -1,5 +1,6 @@
-//! Unified glare rating (UGR) that a scene's luminaires cause for observers (CIE 117:1995): `UGR = 8 log10(0.25 / Lb ·
-//! Σ L² ω / p²)`, with background luminance Lb, and luminance L, solid angle ω and position index p of each luminaire.
+//! Unified glare rating (UGR) that a scene's luminaires and emissive surfaces cause for observers (CIE 117:1995):
+//! `UGR = 8 log10(0.25 / Lb · Σ L² ω / p²)`, with background luminance Lb, and luminance L, solid angle ω and position
+//! index p of each source.
 //!
 //! As in CIE 117, the luminance of a luminaire towards the eye is its intensity divided by the projected area of its
 //! luminous opening, and its solid angle is this projected area divided by the squared distance. Hidden parts of an
@@ -7,8 +8,13 @@
 //! is seen edge-on has no projected area and causes no glare. The background luminance is
 //! `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
 //!
-//! Not modelled: emissive surfaces, the environment and lights without area as glare sources. The rating leaves them
-//! out, but reports their direct illuminance at the eye.
+//! Each connected luminous part of an emissive mesh is a source, too. Rays find its mean luminance towards the eye and
+//! its solid angle (`surfaces`), both of the visible part.
+//!
+//! Not modelled: the environment and lights without area as glare sources; the glow around lamps in a texture, which is
+//! darker than a tenth of their light. The rating leaves them out, but reports their direct illuminance at the eye.
+
+mod surfaces;
 
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;
@@ -28,6 +34,7 @@ use crate::rng;
 use crate::scene::{PunctualLight, c90};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
+use surfaces::{LuminousPart, Surfaces, View};
 
 /// The position of an observer's eye and the direction in which it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,23 +65,31 @@ pub struct Rating {
     /// Background luminance in cd/m², and its standard error.
     pub background: f64,
     pub background_error: f64,
-    /// Direct illuminance at the eye, in lux, from lights that the rating ignores: emissive surfaces, the environment,
-    /// and lights without a luminous opening.
+    /// Direct illuminance at the eye, in lux, from light that the rating ignores: of the environment, of lights without
+    /// a luminous opening, and the glow of emissive surfaces.
     pub unrated_lux: f64,
     pub sources: Vec<Source>,
 }
 
-/// A luminaire that an observer sees, and that causes glare.
+/// A luminaire, or a connected luminous part of a mesh, that an observer sees, and that causes glare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
-    /// Index of the luminaire among the lights of the scene.
-    pub light: usize,
-    /// Luminance of the luminaire's visible part in cd/m², times the root mean square transmittance of the panes in
-    /// front of it.
+    pub origin: Origin,
+    /// Luminance of the source's visible part in cd/m², times the root mean square transmittance of the panes in front
+    /// of it.
     pub luminance: f64,
-    /// Solid angle of the luminaire's visible part in steradians.
+    /// Solid angle of the source's visible part in steradians.
     pub solid_angle: f64,
     pub position_index: f64,
+}
+
+/// The object of the scene that a glare source belongs to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Origin {
+    /// A luminaire, by its index among the lights of the scene.
+    Light(usize),
+    /// A mesh, by its index.
+    Mesh(usize),
 }
 
 impl Rating {
@@ -110,12 +125,14 @@ const BATCHES: u32 = 16;
 pub fn rate(world: &World, eyes: &[Eye], params: &Params, job: Job) -> Result<Vec<Rating>> {
     check_range("samples", params.samples, BATCHES, 1 << 24)?;
     let lamps = lamps(world);
+    let surfaces = Surfaces::new(world, job.part(0.0, 0.0))?;
     for (i, eye) in eyes.iter().enumerate() {
         check(eye, &lamps).map_err(|e| e.context(format_args!("observer {i}")))?;
     }
-    let ratings = exec::map(eyes.len(), job, |i| rate_one(world, &eyes[i], &lamps, params, i as u64, job))?;
+    let rated = Rated { lamps: &lamps, surfaces: &surfaces };
+    let ratings = exec::map(eyes.len(), job, |i| rate_one(world, &eyes[i], &rated, params, i as u64, job))?;
     job.check()?;
-    Ok(ratings)
+    ratings.into_iter().collect()
 }
 
 fn check(eye: &Eye, lamps: &[Lamp]) -> Result<()> {
@@ -214,16 +231,33 @@ fn lamps(world: &World) -> Vec<Lamp> {
     scene.lights.iter().enumerate().filter_map(lamp).collect()
 }
 
-fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u64, job: Job) -> Rating {
+/// The lights that the rating takes into account.
+struct Rated<'a> {
+    /// In the order of the lights of the scene.
+    lamps: &'a [Lamp],
+    surfaces: &'a Surfaces,
+}
+
+impl Rated<'_> {
+    /// Whether the rating takes light of an origin into account; `emission` is its luminance per channel. A luminaire
+    /// that is seen edge-on causes no glare, but counts as rated.
+    fn contains(&self, world: &World, source: LightSource, emission: Vec3) -> bool {
+        match source {
+            LightSource::Punctual(i) => self.lamps.binary_search_by_key(&(i as usize), |lamp| lamp.light).is_ok(),
+            LightSource::Surface { mesh, .. } => self.surfaces.is_luminous(world, mesh, colour::luminance(emission)),
+            LightSource::Environment => false,
+        }
+    }
+}
+
+fn rate_one(world: &World, eye: &Eye, rated: &Rated, params: &Params, index: u64, job: Job) -> Result<Rating> {
     let position = eye.position.as_dvec3();
     let ahead = eye.direction.as_dvec3().normalize();
     let right = ahead.cross(DVec3::Y).normalize();
     let up = right.cross(ahead);
-    let (mut sources, mut rated) = (Vec::new(), Vec::new());
-    rated.resize(world.scene().lights.len(), false);
-    for lamp in lamps {
-        // A luminaire that is seen edge-on causes no glare, but counts as rated: its light is not part of `unrated`.
-        rated[lamp.light] = true;
+    let index_of = |towards: DVec3| position_index(DVec3::from_array([right, up, -ahead].map(|v| towards.dot(v))));
+    let mut sources = Vec::new();
+    for lamp in rated.lamps {
         let Some(seen) = lamp.seen_from(world, position) else { continue };
         // A luminaire behind the observer causes no glare.
         if seen.candela <= 0.0 || seen.towards.dot(ahead) <= 0.0 {
@@ -231,24 +265,28 @@ fn rate_one(world: &World, eye: &Eye, lamps: &[Lamp], params: &Params, index: u6
         }
         let (visible, squared_share) = lamp.visibility(world, position, seen.towards);
         if visible > 0.0 {
-            let towards = [right, up, -ahead].map(|axis| seen.towards.dot(axis));
             sources.push(Source {
-                light: lamp.light,
+                origin: Origin::Light(lamp.light),
                 luminance: seen.candela / seen.area * squared_share.sqrt(),
                 solid_angle: seen.area / seen.distance.powi(2) * visible,
-                position_index: position_index(DVec3::from_array(towards)),
+                position_index: index_of(seen.towards),
             });
         }
     }
-    let (background, background_error, unrated_lux) = background(world, eye, &rated, params, index, job);
+    let view = View { world, eye: eye.position, frame: [right, up, ahead] };
+    for part in rated.surfaces.seen_from(&view, rng::hash(params.seed, &[index]), job)? {
+        let LuminousPart { mesh, luminance, solid_angle, towards } = part;
+        sources.push(Source { origin: Origin::Mesh(mesh), luminance, solid_angle, position_index: index_of(towards) });
+    }
+    let (background, background_error, unrated_lux) = background(world, eye, rated, params, index, job);
     let sum: f64 = sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position_index.powi(2)).sum();
     let ugr = if sources.is_empty() { f64::NEG_INFINITY } else { 8.0 * (0.25 / background * sum).log10() };
-    Rating { ugr, background, background_error, unrated_lux, sources }
+    Ok(Rating { ugr, background, background_error, unrated_lux, sources })
 }
 
 /// Returns the background luminance, its standard error, and the direct illuminance from lights that the rating
 /// ignores.
-fn background(world: &World, eye: &Eye, rated: &[bool], params: &Params, index: u64, job: Job) -> (f64, f64, f64) {
+fn background(world: &World, eye: &Eye, rated: &Rated, params: &Params, index: u64, job: Job) -> (f64, f64, f64) {
     let vertex = Vertex::free(world, world.from_scene(eye.position), eye.direction.normalize());
     let per_batch = params.samples.div_ceil(BATCHES);
     let (mut means, mut unrated) = ([0.0; BATCHES as usize], DVec3::ZERO);
@@ -259,7 +297,8 @@ fn background(world: &World, eye: &Eye, rated: &[bool], params: &Params, index: 
             if job.is_cancelled() {
                 return (0.0, 0.0, 0.0);
             }
-            let mut observer = GlareObserver { rated, scattered: false, indirect: DVec3::ZERO, unrated: DVec3::ZERO };
+            let mut observer =
+                GlareObserver { world, rated, scattered: false, indirect: DVec3::ZERO, unrated: DVec3::ZERO };
             path::gather(world, &vertex, true, &mut Sampler::new(seed, sample), &mut observer);
             indirect += observer.indirect;
             unrated += observer.unrated;
@@ -277,10 +316,10 @@ fn luminance(light: DVec3) -> f64 {
 }
 
 /// Adds up the light that paths carry to an eye, in two sums: indirect light (`indirect`), and direct light from lights
-/// that the rating ignores (`unrated`). Direct light from rated luminaires belongs to neither sum.
+/// that the rating ignores (`unrated`). Direct light from rated luminaires and surfaces belongs to neither sum.
 struct GlareObserver<'a> {
-    /// For each light of the scene, whether the rating takes it into account.
-    rated: &'a [bool],
+    world: &'a World,
+    rated: &'a Rated<'a>,
     /// Whether the path has scattered so far at a surface other than a clear pane.
     scattered: bool,
     indirect: DVec3,
@@ -295,7 +334,7 @@ impl Observer for GlareObserver<'_> {
         let is_at_mesh = matches!(strategy, Strategy::LightSample { mesh, .. } if mesh != NONE);
         match source {
             _ if self.scattered || is_at_mesh => self.indirect += light,
-            LightSource::Punctual(i) if self.rated.get(i as usize) == Some(&true) => {}
+            _ if self.rated.contains(self.world, source, emission) => {}
             _ => self.unrated += light,
         }
     }
