@@ -118,7 +118,7 @@ impl Surfaces {
             for x in 0..SIDE {
                 let near = neighbours([x, y]).map(|i| (cells[i], labels[i])).filter(|(surface, _)| *surface != NONE);
                 if near.clone().next().is_some() {
-                    self.look_into([x, y], view, near, &mut Rng::new(seed, &[x as u64, y as u64]), &mut sums);
+                    self.look_into([x, y], view, &near, &mut Rng::new(seed, &[x as u64, y as u64]), &mut sums);
                 }
             }
         }
@@ -131,7 +131,7 @@ impl Surfaces {
         &self,
         cell: [usize; 2],
         view: &View,
-        near: impl Iterator<Item = (u32, u32)> + Clone,
+        near: &(impl Iterator<Item = (u32, u32)> + Clone),
         rng: &mut Rng,
         sums: &mut [Sums],
     ) {

@@ -312,7 +312,7 @@ fn a_sphere_of_uniform_radiance_has_its_closed_form() {
 #[test]
 fn lamps_of_a_texture_are_sources_of_their_own() {
     let texture = Image::from_fn(32, 32, |x, y| match (x / 4, y / 4) {
-        (1, 1) | (5, 1) => [1.0; 3],
+        (1 | 5, 1) => [1.0; 3],
         (3, 5) => [0.5; 3],
         _ => [0.01; 3],
     });
