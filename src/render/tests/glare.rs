@@ -279,6 +279,26 @@ fn a_panel_as_a_mesh_rates_as_the_panel_of_a_file() {
     assert!(rated(shining_room(turned, 1000.0), EYE, 64).sources.is_empty());
 }
 
+/// A profile of 30 mm, 5 m ahead, is a third as wide as a cell of the raster. It has its whole solid angle, across the
+/// view as well as along it.
+#[test]
+fn a_narrow_profile_is_seen_as_a_whole() {
+    let (narrow, long, above) = (0.03f32, 3.0f32, 1.5);
+    let half = |length: f32| f64::from(length) / 2.0;
+    let strip = |along_x: f32, along_z: f32| {
+        let corner = Vec3::new(3.0 - along_x / 2.0, 2.7, 2.5 - along_z / 2.0);
+        let mesh = Mesh::parallelogram(corner, Vec3::X * along_x, Vec3::Z * along_z, 0);
+        let (near, far) = (5.0 - half(along_z), 5.0 + half(along_z));
+        let [far, near] = [far, near].map(|z| corner_solid_angle(half(along_x), z, above));
+        (rated(shining_room(mesh, 3000.0), EYE, 64), 2.0 * (far - near))
+    };
+    for (rating, exact) in [strip(long, narrow), strip(narrow, long)] {
+        let found: f64 = rating.sources.iter().map(|source| source.solid_angle).sum();
+        assert!((found / exact - 1.0).abs() < 0.1, "{found} {exact}");
+        assert!(rating.sources.iter().all(|source| (source.luminance / 3000.0 - 1.0).abs() < 1e-5), "{rating:?}");
+    }
+}
+
 /// A sphere of radius R at distance d has the solid angle 2π (1 - √(1 - R²/d²)) and its own luminance.
 #[test]
 fn a_sphere_of_uniform_radiance_has_its_closed_form() {
