@@ -14,9 +14,11 @@ install() { # name, packages...
   # One pip installs into all environments, and Python compiles only what it imports: both save seconds of processor
   # time for each environment. Two of them need a pip of their own, to build the wheel.
   case "$name" in python | bpy) bare= ;; *) bare=--without-pip ;; esac
-  { [ -x target/peers/pip/bin/pip ] || python3 -m venv target/peers/pip; } &&
+  # Only pip 22.3 and later know --python.
+  { target/peers/pip/bin/python -m pip --python target/peers/pip/bin/python --version >/dev/null 2>&1 ||
+    { python3 -m venv --clear target/peers/pip && target/peers/pip/bin/python -m pip install --quiet --upgrade pip; }; } &&
     python3 -m venv $bare "target/peers/$name" &&
-    target/peers/pip/bin/pip --disable-pip-version-check --python "target/peers/$name/bin/python" install --quiet --no-compile "$@" ||
+    target/peers/pip/bin/python -m pip --disable-pip-version-check --python "target/peers/$name/bin/python" install --quiet --no-compile "$@" ||
     { echo "$name could not be installed" >&2; rm -rf "target/peers/$name"; }
 }
 

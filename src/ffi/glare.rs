@@ -52,8 +52,8 @@ pub struct luxfer_observer_glare {
     pub solid_angle: f64,
     /// Number of sources in view: rated luminaires, and luminous parts of emissive meshes.
     pub sources: u32,
-    /// Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Parts of
-    /// meshes below a tenth of this range may be missed.
+    /// Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Lamps in an
+    /// emission texture that are narrower than 0.32 degrees may be missed.
     pub outside_range: u32,
 }
 

@@ -78,7 +78,9 @@ versioned!(luxfer_gonio_report, [40], {
 /// Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
 ///
 /// The result is of absolute photometry, states no power and no colour, and its name is that of the first mesh with a
-/// name. Its luminous opening is the box, vertical cylinder or ellipsoid that agrees best with the parts that emit.
+/// name. Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts
+/// that emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
+/// intensities are right, but glare, near light and pictures of the luminaire are not.
 /// Intensities between the angles are interpolated linearly; the stated errors are those of the paths alone. The caller
 /// releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
 /// proportional to planes times angles times samples, seconds with the defaults. luxfer_job_start runs it as a job. Any

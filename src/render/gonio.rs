@@ -10,8 +10,9 @@
 //! if its projected areas agree better with the luminous areas that the rays meet. Only light near the body, glare and
 //! pictures depend on it.
 //!
-//! Not modelled: punctual lights and luminaires of the scene; colour, which differs between directions; the errors of
-//! linear interpolation between the angles, which the stated errors leave out.
+//! Not modelled: the opening of a body whose light leaves through a translucent shade or from a reflector, because it
+//! is the opening of the parts that emit; punctual lights and luminaires of the scene; colour, which differs between
+//! directions; the errors of linear interpolation between the angles, which the stated errors leave out.
 
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;

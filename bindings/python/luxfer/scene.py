@@ -349,10 +349,10 @@ class Scene(Handle):
         return ratings
 
     def distribution(
-        self, meshes: ArrayLike = (), **params: Unpack[GonioParams]
+        self, meshes: ArrayLike | None = None, **params: Unpack[GonioParams]
     ) -> tuple[Distribution, GonioReport]:
-        """Measures the luminous intensity of meshes far away from them, by their indices; of all meshes if none is
-        given. Returns the distribution, and a report with its errors and the position of its luminaire.
+        """Measures the luminous intensity of meshes far away from them, by their indices; without indices, of all
+        meshes. Returns the distribution, and a report with its errors and the position of its luminaire.
 
         >>> scene = Scene(context)
         >>> lamp = scene.add_material(emission=(100, 100, 100))
@@ -365,8 +365,12 @@ class Scene(Handle):
         from .photometry import Distribution
 
         settings = _params.fill(_abi.luxfer_gonio_params, params, [])
-        indices = np.ascontiguousarray(meshes, np.uint32).ravel()
-        place = _arrays.pointer(indices, ctypes.c_uint32) if indices.size else None
+        indices, place = np.empty((0, 1), np.uint32), None
+        if meshes is not None:
+            indices = np.ascontiguousarray(_rows(np.reshape(meshes, (-1, 1)), 1, np.uint32, "meshes"))
+            if not indices.size:
+                raise ValueError("meshes is empty; leave it out to measure all meshes")
+            place = _arrays.pointer(indices, ctypes.c_uint32)
         pointer, report = POINTER(_abi.luxfer_distribution)(), _abi.luxfer_gonio_report()
         self._call("get_distribution", place, indices.size, settings, pointer, report, ctypes.sizeof(report))
         return Distribution._adopt(self.context, pointer), cast(GonioReport, _params.report(report))

@@ -2362,8 +2362,8 @@ class ObserverGlare:
     sources: int
     """Number of sources in view: rated luminaires, and luminous parts of emissive meshes."""
     outside_range: int
-    """Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Parts
-    of meshes below a tenth of this range may be missed."""
+    """Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Lamps
+    in an emission texture that are narrower than 0.32 degrees may be missed."""
 
 
 class GonioParams(TypedDict, total=False):

@@ -26,9 +26,9 @@ const SECTIONS: usize = 24;
 /// Maximum number of consecutive sections ([`Section`]) of a bar that a crossing bar may hide. It suffices for a
 /// crossing bar of the maximum width. [convention]
 const MAX_HIDDEN_SECTIONS: usize = 2;
-/// A line between two bars is a lead strip inside a pane, and no bar, if two conditions hold: its width is at most
-/// `MAX_STRIP_SHARE` of the distance between the bars, and the strength of both bars ([`Bar::strength`]) is at least
-/// `MIN_BAR_STRENGTH` times its own. [bench photos:real]
+/// A line that lies alone between two bars is a lead strip inside a pane, and no bar, if two conditions hold: its width
+/// is at most `MAX_STRIP_SHARE` of the distance between the bars, and the strength of both bars ([`BarGroup`]) is at
+/// least `MIN_BAR_STRENGTH` times its own. [bench photos:real]
 const MAX_STRIP_SHARE: f64 = 0.03;
 const MIN_BAR_STRENGTH: f64 = 1.5;
 /// Where the photo is sharp, a section ([`Section`]) shows no bar if its depth is below this share of the whole bar's
@@ -105,7 +105,7 @@ fn groups(bars: &[Bar]) -> Vec<BarGroup> {
     bars.chunk_by(is_close).map(group).collect()
 }
 
-/// Removes the lead strips inside panes from the bars ([`MAX_STRIP_SHARE`]).
+/// Removes single lead strips inside panes from the bars ([`MAX_STRIP_SHARE`]).
 fn remove_strips(bars: &mut Vec<Bar>) {
     let groups = groups(bars);
     let is_strip = |around: &[BarGroup]| {
@@ -190,7 +190,7 @@ impl<'a> Lines<'a> {
         self.along.div_ceil(SECTIONS)
     }
 
-    /// Finds the bars that the photo shows, without the lead strips inside panes.
+    /// Finds the bars that the photo shows, without single lead strips inside panes.
     pub fn bars(&self) -> Vec<Bar> {
         let min_known = (self.along as f64 * MIN_LENGTH) as usize;
         let profile: Vec<Option<f32>> =

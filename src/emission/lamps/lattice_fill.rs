@@ -125,18 +125,31 @@ fn distinct(sites: &Sites) -> Vec<&Site> {
 /// Returns the components that may be drawn at a site: its whole lamps that are sharp in the photo. If any whole lamp
 /// has a design, only lamps with a design are returned. If there is no whole lamp, returns the site's first lamp.
 ///
-/// On a luminous ceiling, only panes of the site's main kind are returned, because a larger pane would overlap its
-/// neighbours. The main kind is the one with most photo pixels.
+/// On a luminous ceiling, only panes of the site's main kind are returned, if any of its whole lamps has a design: a
+/// larger pane would overlap its neighbours.
 fn sharpest(site: &Site, exemplar: &Exemplar, designs: &Designs) -> Vec<usize> {
-    let kind = |l: &MeasuredLamp| designs.of(l.component).map(|(_, fitted)| fitted.kind);
-    let shown = |k: Option<usize>| site.lamps.iter().filter(|l| kind(l) == k).map(|l| l.weight).sum::<f64>();
-    let main = site.lamps.iter().map(kind).max_by(|a, b| shown(*a).total_cmp(&shown(*b))).flatten();
-    let fits = |l: &MeasuredLamp| !exemplar.is_luminous_ceiling() || kind(l) == main;
-    let whole = || site.lamps.iter().filter(|l| exemplar.roles[l.component] == Role::Whole && fits(l));
+    let is_whole = |l: &&MeasuredLamp| exemplar.roles[l.component] == Role::Whole;
+    let main =
+        if exemplar.is_luminous_ceiling() { main_kind(site.lamps.iter().filter(is_whole), designs) } else { None };
+    let fits = |l: &&MeasuredLamp| main.is_none() || kind(l, designs) == main;
+    let whole = || site.lamps.iter().filter(is_whole).filter(fits);
     let has_design = |l: &MeasuredLamp| designs.of(l.component).is_some();
     let any_design = whole().any(has_design);
     let clear = || whole().filter(|l| !any_design || has_design(l));
     let max_weight = clear().map(|l| l.weight).fold(0.0, f64::max);
     let sharp: Vec<usize> = clear().filter(|l| l.weight >= MIN_SHARP_SHARE * max_weight).map(|l| l.component).collect();
     if sharp.is_empty() { vec![site.lamps[0].component] } else { sharp }
+}
+
+/// The number of a lamp's design; `None` if it has none.
+fn kind(lamp: &MeasuredLamp, designs: &Designs) -> Option<usize> {
+    designs.of(lamp.component).map(|(_, fitted)| fitted.kind)
+}
+
+/// The design that most photo pixels of the lamps show; `None` if none of the lamps has a design.
+fn main_kind<'a>(lamps: impl Iterator<Item = &'a MeasuredLamp>, designs: &Designs) -> Option<usize> {
+    let mut shown = vec![0.0; designs.kinds.len()];
+    lamps.filter_map(|lamp| Some((kind(lamp, designs)?, lamp.weight))).for_each(|(kind, weight)| shown[kind] += weight);
+    let main = (0..shown.len()).max_by(|a, b| shown[*a].total_cmp(&shown[*b]))?;
+    (shown[main] > 0.0).then_some(main)
 }

@@ -1,12 +1,14 @@
 //! Emissive surfaces as glare sources: the connected luminous parts of meshes that an observer sees.
 //!
-//! A raster whose cells have equal solid angles covers the half of space ahead of the eye. Several rays at random places
-//! in a cell find the luminous surfaces there. They meet luminous surfaces only, so a thing in front of a lamp does not
-//! divide the lamp. The first cells that are looked into are those in whose centre a surface is luminous, and those
-//! along the edges of the emissive triangles; so narrow profiles are found, too. From each cell with a luminous surface,
-//! the search goes on to the cells beside it. Touching cells in which the same connected surface is luminous form a
-//! source. Their rays give its mean luminance and its solid angle, without the parts that other things hide. The 16 rays
-//! of a cell leave a noise of about 2 % in the solid angle of the smallest sources for which CIE 117 is valid.
+//! A raster whose cells have equal solid angles covers the half of space ahead of the eye. Several rays at random
+//! places in a cell find the luminous surfaces there. They meet luminous surfaces only, so a thing in front of a lamp
+//! does not divide the lamp.
+//!
+//! The search begins in the cells in whose centre a surface is luminous, and in the cells along the edges of the
+//! emissive triangles, so that it finds narrow profiles, too. From each cell with a luminous surface, it goes on to the
+//! cells beside it. Touching cells in which the same connected surface is luminous form a source. Their rays give its
+//! mean luminance and its solid angle, without the parts that other things hide. The 16 rays of a cell leave a noise of
+//! about 2 % in the solid angle of the smallest sources for which CIE 117 is valid.
 //!
 //! Not modelled: lamps in emission textures that are narrower than a cell, 0.32°, and may be missed.
 

@@ -322,11 +322,11 @@ def _glare(r: Requirement, found: Sequence[Rating], level: float, samples: int) 
     missed = math.nan if math.isnan(met) else max(0.0, 1 - len(found) * met)
     seen = max(x.background.value for x in found) * math.pi
     if any(x.unrated > UNRATED * max(seen, x.unrated) for x in found):
-        note = "light that the rating leaves out reaches an eye: of luminaires without opening, or glow of surfaces"
+        note = "light that the rating leaves out reaches an eye: of the environment, of lights without opening, or glow of surfaces"
         outcome = "fails" if missed >= level else "unknown"
         return Finding(r, rating.ugr, low, math.inf, 0, outcome, samples, note)
     count = sum(x.outside_range for x in found)
-    note = f"{count} views of luminaires outside the range of solid angles of CIE 117" if count else ""
+    note = f"{count} views of sources outside the range of solid angles of CIE 117" if count else ""
     return Finding(r, rating.ugr, low, high, met, _outcome(met, missed, level), samples, note)
 
 

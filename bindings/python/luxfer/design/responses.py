@@ -128,17 +128,29 @@ def _goals(lit: Scene, count: int, grids: list[dict], paths: int, seed: int) -> 
 def respond_glare(
     scene: Scene, luminaires: Sequence[Luminaire], observers: Sequence[Observers], seed: int = 1
 ) -> list[GlareResponse]:
-    """The parts of glare, from one scene for each luminaire alone, and one with none."""
+    """The parts of glare: of each luminaire, without the light of emissive meshes and of the environment, and of all
+    other light."""
     eyes = np.concatenate([o.positions for o in observers])
     views = np.concatenate([o.directions for o in observers])
     other = glare_parts(lit_scene(scene, []), eyes, views, seed + len(luminaires))
+    unlit = _unlit(scene)
+    without = glare_parts(unlit, eyes, views, seed + len(luminaires))
     parts = np.zeros((2, len(eyes), len(luminaires)))
     for index, lamp in enumerate(dimmed(luminaires, [1.0] * len(luminaires))):
-        both = glare_parts(lit_scene(scene, [lamp]), eyes, views, seed + index)
-        parts[:, :, index] = np.maximum(both - other, 0)
+        parts[:, :, index] = np.maximum(glare_parts(lit_scene(unlit, [lamp]), eyes, views, seed + index) - without, 0)
     ends = np.cumsum([len(o.positions) for o in observers])[:-1]
     split = [np.split(part, ends) for part in (*parts, *other)]
     return [GlareResponse(o, *found) for o, *found in zip(observers, *split)]
+
+
+def _unlit(scene: Scene) -> Scene:
+    """A copy of a scene whose materials and environment emit nothing. Otherwise the noise of their light would enter
+    the part of each luminaire."""
+    copy = Scene.from_bytes(scene.context, scene.to_bytes(), keep_origin=1)
+    for index in range(copy.counts.materials):
+        copy.set_material(index, emission=(0, 0, 0))
+    copy.set_environment((0, 0, 0))
+    return copy
 
 
 def glare_parts(
