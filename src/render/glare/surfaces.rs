@@ -7,8 +7,8 @@
 //! The search begins in the cells in whose centre a surface is luminous, and in the cells along the edges of the
 //! emissive triangles, so that it finds narrow profiles, too. From each cell with a luminous surface, it goes on to the
 //! cells beside it. Touching cells in which the same connected surface is luminous form a source. Their rays give its
-//! mean luminance and its solid angle, without the parts that other things hide. The 16 rays of a cell leave a noise of
-//! about 2 % in the solid angle of the smallest sources for which CIE 117 is valid.
+//! mean luminance and its solid angle, without the parts that other things hide. As 16 rays look
+//! into a cell, the solid angle of a source of few cells is noisy; no stated error contains this noise.
 //!
 //! Not modelled: lamps in emission textures that are narrower than a cell, 0.32°, and may be missed.
 
