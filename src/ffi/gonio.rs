@@ -81,8 +81,9 @@ versioned!(luxfer_gonio_report, [40], {
 /// name. Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts
 /// that emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
 /// intensities are right, but glare, near light and pictures of the luminaire are not.
-/// Intensities between the angles are interpolated linearly; the stated errors are those of the paths alone. The caller
-/// releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
+///
+/// Intensities between the angles are interpolated linearly; the stated errors contain the noise of the paths only. The
+/// caller releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
 /// proportional to planes times angles times samples, seconds with the defaults. luxfer_job_start runs it as a job. Any
 /// thread.
 /// LUXFER_DEGENERATE if no mesh emits light, or if none leaves the meshes, as from a closed room;

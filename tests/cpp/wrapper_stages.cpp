@@ -289,7 +289,7 @@ void light(const Context &context) {
     CHECK(Scene::load(context, "wrapper_stages.glb").counts().triangles == scene.counts().triangles);
 }
 
-// The body of a globe, from its picture to a scene.
+// The body of a globe, from its picture to a scene and to a luminaire.
 void pendants(const Context &context) {
     std::vector<float> disc(96 * 96);
     for (std::size_t i = 0; i < disc.size(); ++i) {
@@ -310,6 +310,11 @@ void pendants(const Context &context) {
     const luxfer::PlacedPendants placed = luxfer::add_pendants(scene, lamps[0], places, 2000, 0.4f);
     CHECK(placed.first_mesh == meshes && scene.counts().meshes == meshes + 2);
     CHECK(placed.material + 1 == scene.counts().materials);
+    luxfer::GonioParams directions;
+    directions.planes = 4;
+    const std::array<std::uint32_t, 1> body = {placed.first_mesh};
+    const luxfer::MeasuredDistribution measured = luxfer::measure_distribution(scene, body, directions);
+    CHECK(measured.report.flux > 0 && measured.distribution.report().planes == 4);
 }
 
 luxfer::Guides guides_of(const Context &context, luxfer_demo which) {

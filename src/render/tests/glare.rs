@@ -353,7 +353,7 @@ fn lamps_of_a_texture_are_sources_of_their_own() {
         rated(plain, EYE, 1024).sources[0].solid_angle
     };
     assert!(rating.unrated_lux > 0.5 * 80.0 * 0.4 * projected(1.0) && rating.unrated_lux < 80.0 * projected(1.0));
-    // Two meshes that do not touch are two sources, and a mesh that is behind the eye is none.
+    // Two meshes that do not touch are two sources. A mesh behind the eye is no source.
     let mut two = shining_room(ball(Vec3::new(2.0, 2.2, 4.5), 0.3), 3000.0);
     two.meshes.push(Mesh { material: 1, ..ball(Vec3::new(3.0, 2.0, 7.9), 0.1) });
     let one = rated(two.clone(), EYE, 64).sources;

@@ -142,7 +142,7 @@ fn the_flux_of_a_shaded_lamp_balances() {
     assert!((opposite_squares(1.0) - 0.1998).abs() < 1e-4);
 }
 
-/// The stated errors are those of independent runs.
+/// The stated errors agree with the scatter of independent runs.
 #[test]
 fn errors_are_standard_errors() {
     let shaded = scene(vec![(ball(Vec3::Y, 0.2), 0.5, 1000.0), (shade(Vec3::new(0.0, 1.2, 0.0), 0.3, 0.3), 0.5, 0.0)]);
