@@ -100,8 +100,8 @@ pub struct Lamps {
 /// Panes are one lamp if the bar between them is at most this share of the lamps' shorter side. [convention]
 const MAX_BAR: f64 = 0.2;
 
-/// Lamps listed by hand are of two kinds if every large lamp has at least `MIN_KIND_RATIO` times the area of every small
-/// one, and each kind has at least the share `MIN_KIND_SHARE` of the lamps. [convention]
+/// Lamps listed by hand are of two kinds if every large lamp has at least `MIN_KIND_RATIO` times the area of every
+/// small one, and each kind has at least the share `MIN_KIND_SHARE` of the lamps. [convention]
 const MIN_KIND_RATIO: f64 = 1.5;
 const MIN_KIND_SHARE: f64 = 0.25;
 
