@@ -322,7 +322,7 @@ def _glare(r: Requirement, found: Sequence[Rating], level: float, samples: int) 
     missed = math.nan if math.isnan(met) else max(0.0, 1 - len(found) * met)
     seen = max(x.background.value for x in found) * math.pi
     if any(x.unrated > UNRATED * max(seen, x.unrated) for x in found):
-        note = "light that the rating leaves out reaches an eye: of the environment, of lights without opening, or glow of surfaces"
+        note = "light that the rating leaves out reaches an eye: of the environment, lights without opening, or glow"
         outcome = "fails" if missed >= level else "unknown"
         return Finding(r, rating.ugr, low, math.inf, 0, outcome, samples, note)
     count = sum(x.outside_range for x in found)

@@ -132,7 +132,7 @@ def respond_glare(
     other light."""
     eyes = np.concatenate([o.positions for o in observers])
     views = np.concatenate([o.directions for o in observers])
-    other = glare_parts(lit_scene(scene, []), eyes, views, seed + len(luminaires))
+    other = glare_parts(scene, eyes, views, seed + len(luminaires))
     unlit = _unlit(scene)
     without = glare_parts(unlit, eyes, views, seed + len(luminaires))
     parts = np.zeros((2, len(eyes), len(luminaires)))
@@ -146,7 +146,7 @@ def respond_glare(
 def _unlit(scene: Scene) -> Scene:
     """A copy of a scene whose materials and environment emit nothing. Otherwise the noise of their light would enter
     the part of each luminaire."""
-    copy = Scene.from_bytes(scene.context, scene.to_bytes(), keep_origin=1)
+    copy = lit_scene(scene, [])
     for index in range(copy.counts.materials):
         copy.set_material(index, emission=(0, 0, 0))
     copy.set_environment((0, 0, 0))
