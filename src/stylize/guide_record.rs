@@ -1,7 +1,8 @@
 //! The guides of a frame as the next frame of a sequence needs them: the light to which the paint of each patch was
 //! matched, and the data by which points of surfaces are recognised.
 
-use super::guides::Channels;
+use super::guides::{Channels, MAX_CHANNELS};
+use super::params::MAX_PATCH;
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Comparison, Image, neighbourhood, try_collect, try_vec};
@@ -112,17 +113,28 @@ fn difference(a: &[u8], b: &[u8]) -> f32 {
     f32::from(a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)) / STEPS
 }
 
-/// Writes the means of the chosen channels over the patches of row `y`.
+/// Writes the means of the chosen channels over the patches of row `y`: sums along the columns of pixels first, because
+/// neighbouring patches share them.
 fn means(row: &mut [u8], target: &Image, channels: &[usize], y: usize, patch: usize) {
     let n = channels.len();
     let scale = 1.0 / (patch * patch) as f32;
-    for (x, out) in row.chunks_exact_mut(n).enumerate() {
-        let mut sums = [0.0f32; super::guides::MAX_CHANNELS];
+    let column = |x: usize| {
+        let mut sums = [0.0f32; MAX_CHANNELS];
         for dy in 0..patch {
-            let start = x * target.channels;
-            let pixels = target.row(y + dy)[start..start + patch * target.channels].chunks_exact(target.channels);
-            pixels.for_each(|p| sums.iter_mut().zip(channels).for_each(|(sum, &c)| *sum += p[c]));
+            let pixel = target.pixel(x, y + dy);
+            sums.iter_mut().zip(channels).for_each(|(sum, &c)| *sum += pixel[c]);
         }
-        out.iter_mut().zip(&sums).for_each(|(out, sum)| *out = stored(sum * scale));
+        sums
+    };
+    // A ring of the column sums of the current patch; the patch at `x` replaces that of column `x - 1`.
+    let mut columns = [[0.0f32; MAX_CHANNELS]; MAX_PATCH];
+    (0..patch - 1).for_each(|x| columns[x] = column(x));
+    for (x, out) in row.chunks_exact_mut(n).enumerate() {
+        let last = x + patch - 1;
+        columns[last % patch] = column(last);
+        for (i, out) in out.iter_mut().enumerate() {
+            let sum: f32 = columns[..patch].iter().map(|sums| sums[i]).sum();
+            *out = stored(sum * scale);
+        }
     }
 }

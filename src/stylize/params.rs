@@ -6,6 +6,9 @@ use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 use crate::patch::{Field, MAX_SIDE, VoteMode};
 
+/// Largest value of [`Params::patch`].
+pub(super) const MAX_PATCH: usize = 33;
+
 /// The algorithm that searches for nearest patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finder {
@@ -176,7 +179,7 @@ impl Params {
 
     /// Checks that every setting is in its range.
     pub fn check(&self) -> Result<()> {
-        check_range("patch", self.patch, 1, 33)?;
+        check_range("patch", self.patch, 1, MAX_PATCH)?;
         if self.patch.is_multiple_of(2) {
             return Err(Error::argument(format!("patch is {}; it must be odd", self.patch)));
         }

@@ -66,7 +66,7 @@ pub struct Sample {
     block: u32,
 }
 
-/// The pixels that are clipped in neither of two photos, of a lattice of pixels.
+/// Returns the pixels that neither photo clips. Large photos are subsampled: every n-th row and column is read.
 pub fn samples(short: &Frame, long: &Frame, [width, height]: [usize; 2], job: Job) -> Result<Vec<Sample>> {
     let step = ((width * height).div_ceil(MAX_PIXELS) as f64).sqrt().ceil() as usize;
     let rows = exec::map(height.div_ceil(step), job, |row| {

@@ -52,7 +52,7 @@ pub fn convert(diffuse: Vec3, specular: Vec3) -> (Vec3, f32) {
     (of_diffuse.lerp(of_specular, metallic * metallic).clamp(Vec3::ZERO, Vec3::ONE), metallic)
 }
 
-/// Perceived brightness of a colour, with the weights of the published conversion.
+/// Perceived brightness of a colour, with the weights of Khronos' conversion.
 fn brightness(colour: Vec3) -> f32 {
     // [convention: ITU-R BT.601, luma]
     (colour * colour).dot(Vec3::new(0.299, 0.587, 0.114)).sqrt()
