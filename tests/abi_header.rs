@@ -645,7 +645,7 @@ layouts! {
     luxfer_relight_report: struct_size paths scale half_width response background outcome reserved error delta_e;
     luxfer_lamps_params: struct_size group row_tolerance free_colour max_scale regularisation tolerance paths target_error
         time_budget_ms reserved seed;
-    luxfer_lamps_report: struct_size lamps groups goals paths all_goals_met;
+    luxfer_lamps_report: struct_size lamps groups goals paths all_goals_satisfied;
     luxfer_lamp: struct_size group centre scale half_width;
     luxfer_lamps_goal: struct_size outcome target achieved half_width background target_lux achieved_lux half_width_lux
         background_lux;

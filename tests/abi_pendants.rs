@@ -255,8 +255,9 @@ fn lamps_are_added_to_a_scene() {
     let size = size_of_val(&info);
     unsafe {
         assert_eq!(luxfer_scene_get_mesh(scene, mesh + 1, &mut info, size), LUXFER_OK);
-        let mut positions = vec![0f32; 3 * info.vertex_count];
-        let (first, capacity) = (positions.as_mut_ptr(), info.vertex_count);
+        let capacity = info.vertex_count as usize;
+        let mut positions = vec![0f32; 3 * capacity];
+        let first = positions.as_mut_ptr();
         let status = luxfer_scene_read_vertices(scene, mesh + 1, LUXFER_VERTEX_POSITION, first, capacity);
         assert_eq!(status, LUXFER_OK, "{}", message(context));
         let top = positions.iter().skip(1).step_by(3).fold(f32::MIN, |top, y| top.max(*y));

@@ -128,8 +128,8 @@ fn a_target_is_stylised_and_reported_level_by_level() {
 
         // The preview preset makes a picture of half the size.
         let mut preview = params();
-        assert_eq!(luxfer_stylize_get_preset(&mut preview, 104, LUXFER_STYLIZE_PREVIEW), LUXFER_OK);
-        assert_eq!(luxfer_stylize_get_preset(&mut preview, 104, 4), LUXFER_INVALID_ARGUMENT);
+        assert_eq!(luxfer_stylize_get_preset(LUXFER_STYLIZE_PREVIEW, &mut preview, 104), LUXFER_OK);
+        assert_eq!(luxfer_stylize_get_preset(4, &mut preview, 104), LUXFER_INVALID_ARGUMENT);
         assert_eq!(run(stylize, &preview), LUXFER_OK);
         let half = get(stylize, LUXFER_STYLIZE_IMAGE_PICTURE);
         assert_eq!(pixels(half).0, 35);

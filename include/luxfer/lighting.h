@@ -342,7 +342,7 @@ typedef struct luxfer_lamps_report {
     /** Number of paths traced for each goal. */
     uint32_t paths;
     /** 1 if all goals of positive weight are met, else 0: luxfer_lamps_get_reason then gives the reason. */
-    uint32_t all_goals_met;
+    uint32_t all_goals_satisfied;
 } luxfer_lamps_report;
 
 /** The solution for one lamp. */

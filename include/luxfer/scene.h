@@ -927,9 +927,9 @@ typedef struct luxfer_mesh_info {
     /** Index of the mesh's material. */
     uint32_t material;
     /** Number of vertices. */
-    size_t vertex_count;
+    uint64_t vertex_count;
     /** Number of triangles. */
-    size_t triangle_count;
+    uint64_t triangle_count;
     /** 1 if each vertex has a normal, 0 if triangles are shaded flat. */
     uint32_t has_normals;
     /** Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second. */

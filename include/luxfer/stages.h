@@ -1187,8 +1187,8 @@ typedef struct luxfer_relight_report {
 /** The light should be at most the value, for example to limit glare. */
 #define LUXFER_CONSTRAINT_AT_MOST 2
 
-/** The target is met. */
-#define LUXFER_OUTCOME_MET 0
+/** The target, or its limit, is met. */
+#define LUXFER_OUTCOME_SATISFIED 0
 
 /**
  * The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps, two goals

@@ -303,9 +303,9 @@ typedef int32_t luxfer_stylize_preset;
  * LUXFER_STYLIZE_PAPER. size is sizeof *params. Any thread.
  * LUXFER_INVALID_ARGUMENT if preset is another value.
  */
-luxfer_status luxfer_stylize_get_preset(luxfer_stylize_params *params,
-                                        size_t size,
-                                        luxfer_stylize_preset preset);
+luxfer_status luxfer_stylize_get_preset(luxfer_stylize_preset preset,
+                                        luxfer_stylize_params *params,
+                                        size_t size);
 
 /* ==================================================================================================================
  * Stylisation

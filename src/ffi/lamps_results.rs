@@ -34,11 +34,11 @@ pub struct luxfer_lamps_report {
     /// Number of paths traced for each goal.
     pub paths: u32,
     /// 1 if all goals of positive weight are met, else 0: luxfer_lamps_get_reason then gives the reason.
-    pub all_goals_met: u32,
+    pub all_goals_satisfied: u32,
 }
 
 versioned!(luxfer_lamps_report, [24], {
-    Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, all_goals_met: 0 }
+    Self { struct_size: 24, lamps: 0, groups: 0, goals: 0, paths: 0, all_goals_satisfied: 0 }
 });
 
 /// The solution for one lamp.
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn luxfer_lamps_get_report(
             groups: o.solution.scale.len() as u32,
             goals: o.targets.len() as u32,
             paths: o.responses.paths,
-            all_goals_met: u32::from(o.solution.unreachable.is_none()),
+            all_goals_satisfied: u32::from(o.solution.unreachable.is_none()),
             ..luxfer_lamps_report::defaults()
         });
         Ok(())

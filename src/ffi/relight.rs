@@ -54,8 +54,8 @@ pub const LUXFER_CONSTRAINT_AT_MOST: luxfer_constraint = 2;
 
 /// Whether the target is met in a colour channel, and if not, the reason: a LUXFER_OUTCOME_ value.
 pub type luxfer_outcome = i32;
-/// The target is met.
-pub const LUXFER_OUTCOME_MET: luxfer_outcome = 0;
+/// The target, or its limit, is met.
+pub const LUXFER_OUTCOME_SATISFIED: luxfer_outcome = 0;
 /// The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps, two goals
 /// contradict each other.
 pub const LUXFER_OUTCOME_TOO_BRIGHT: luxfer_outcome = 1;
@@ -193,7 +193,7 @@ fn constraint(value: luxfer_constraint) -> Result<Constraint> {
 
 pub(super) fn outcome_value(status: TargetStatus) -> luxfer_outcome {
     match status {
-        TargetStatus::Met => LUXFER_OUTCOME_MET,
+        TargetStatus::Met => LUXFER_OUTCOME_SATISFIED,
         TargetStatus::TooBright => LUXFER_OUTCOME_TOO_BRIGHT,
         TargetStatus::Dark => LUXFER_OUTCOME_DARK,
         TargetStatus::TooDim => LUXFER_OUTCOME_TOO_DIM,

@@ -35,9 +35,9 @@ pub struct luxfer_mesh_info {
     /// Index of the mesh's material.
     pub material: u32,
     /// Number of vertices.
-    pub vertex_count: usize,
+    pub vertex_count: u64,
     /// Number of triangles.
-    pub triangle_count: usize,
+    pub triangle_count: u64,
     /// 1 if each vertex has a normal, 0 if triangles are shaded flat.
     pub has_normals: u32,
     /// Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second.
@@ -48,12 +48,9 @@ pub struct luxfer_mesh_info {
     pub reserved: u32,
 }
 
-const MESH_INFO_SIZE: usize = 24 + 2 * size_of::<usize>();
-
-versioned!(luxfer_mesh_info, [MESH_INFO_SIZE], {
-    let struct_size = MESH_INFO_SIZE as u32;
+versioned!(luxfer_mesh_info, [40], {
     Self {
-        struct_size,
+        struct_size: 40,
         material: 0,
         vertex_count: 0,
         triangle_count: 0,
@@ -79,8 +76,8 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh(
         let mesh = mesh(&scene, index)?;
         out.set(luxfer_mesh_info {
             material: u32::try_from(mesh.material).unwrap_or(LUXFER_NONE),
-            vertex_count: mesh.positions.len(),
-            triangle_count: mesh.triangles.len(),
+            vertex_count: mesh.positions.len() as u64,
+            triangle_count: mesh.triangles.len() as u64,
             has_normals: u32::from(!mesh.normals.is_empty()),
             uv_sets: u32::from(!mesh.uvs[0].is_empty()) + 2 * u32::from(!mesh.uvs[1].is_empty()),
             has_colours: u32::from(!mesh.colours.is_empty()),

@@ -190,9 +190,9 @@ impl luxfer_stylize_params {
 /// LUXFER_INVALID_ARGUMENT if preset is another value.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_get_preset(
+    preset: luxfer_stylize_preset,
     params: *mut luxfer_stylize_params,
     size: usize,
-    preset: luxfer_stylize_preset,
 ) -> luxfer_status {
     guard(|| {
         let place = params::Report::new(params, size)?;

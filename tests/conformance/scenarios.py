@@ -432,7 +432,7 @@ def stylisation() -> Scenario:
     s.call("stylize_add_guides", stage, *guides, 0, 1.0)
     s.call("stylize_set_source_mask", stage, s.image(24, 16, 1, 2.0))
     s.call("stylize_set_target_mask", stage, s.image(24, 16, 1, 2.0), None)
-    s.call("stylize_get_preset", struct("stylize_params"), 104, 0)
+    s.call("stylize_get_preset", 0, struct("stylize_params"), 104)
     s.run("stylize_start", stage, struct("stylize_params", keep_for_update=1))
     s.run("stylize_update", stage, artwork, s.image(24, 16, 1, 1.0))
     s.make("stylize_get_image", stage, 0)

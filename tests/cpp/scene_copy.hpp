@@ -64,15 +64,16 @@ inline MeshCopy read_mesh(const luxfer::Scene &scene, std::uint32_t index) {
     MeshCopy mesh;
     mesh.name = scene.mesh_name(index);
     mesh.material = info.material;
-    mesh.positions.resize(3 * info.vertex_count);
-    mesh.normals.resize(info.has_normals ? 3 * info.vertex_count : 0);
-    mesh.indices.resize(3 * info.triangle_count);
+    const auto vertices = static_cast<std::size_t>(info.vertex_count);
+    mesh.positions.resize(3 * vertices);
+    mesh.normals.resize(info.has_normals ? 3 * vertices : 0);
+    mesh.indices.resize(3 * static_cast<std::size_t>(info.triangle_count));
     scene.read_vertices(index, LUXFER_VERTEX_POSITION, mesh.positions);
     scene.read_triangles(index, mesh.indices);
     if (info.has_normals)
         scene.read_vertices(index, LUXFER_VERTEX_NORMAL, mesh.normals);
     if (info.uv_sets & 1) {
-        mesh.uvs.resize(2 * info.vertex_count);
+        mesh.uvs.resize(2 * vertices);
         scene.read_vertices(index, LUXFER_VERTEX_UV_0, mesh.uvs);
     }
     return mesh;

@@ -21,7 +21,7 @@ class Transfer(Case):
         report, solution = transfer.report, transfer.solution
         off = np.array(solution.scale) * solution.response - 100 * np.array(report.target)
         self.assertTrue((np.abs(off) <= np.multiply(solution.half_width, solution.response)).all(), off)
-        self.assertEqual(solution.outcome, (luxfer.types.Outcome.MET,) * 3)
+        self.assertEqual(solution.outcome, (luxfer.types.Outcome.SATISFIED,) * 3)
         self.assertTrue((transfer.image("render").numpy() >= 0).all())
         self.assertGreater(transfer.image("render").numpy().mean(), 0)
 
@@ -343,7 +343,7 @@ class Rendering(Case):
         for x, lux in ((1.0, 300), (4.0, 200)):
             lamps.add_grid({"origin": (x, 2, 1.5), "across": (1, 0, 0), "down": (0, 0, 1)}, lux)
         report = lamps.run(paths=1 << 14).report
-        self.assertEqual((report.lamps, report.groups, report.goals, report.all_goals_met), (2, 2, 2, 1), lamps.reason)
+        self.assertEqual((report.lamps, report.groups, report.goals, report.all_goals_satisfied), (2, 2, 2, 1), lamps.reason)
         for i, lux in enumerate((300, 200)):
             found = np.dot(lamps.goal(i).achieved, (0.2126, 0.7152, 0.0722)) * np.pi
             self.assertAlmostEqual(found, lux, delta=0.02 * lux)
@@ -357,17 +357,17 @@ class Rendering(Case):
         # tolerance.
         lamps.set_levels(np.linspace(0, 2 * max(lamps.lamp(i).scale[0] for i in (0, 1)), 41))
         report = lamps.run(paths=1 << 14, tolerance=0.05).report
-        self.assertEqual(report.all_goals_met, 1, lamps.reason)
+        self.assertEqual(report.all_goals_satisfied, 1, lamps.reason)
         lamps.set_levels([])
         # With at-least goals, a desk may get more light than its goal.
         for goal in (0, 1):
             lamps.set_constraint(goal, "at-least")
-        self.assertEqual(lamps.run(paths=1 << 14).report.all_goals_met, 1, lamps.reason)
+        self.assertEqual(lamps.run(paths=1 << 14).report.all_goals_satisfied, 1, lamps.reason)
         for goal in (0, 1):
             lamps.set_constraint(goal, ("equal",) * 3)
         # If all lamps share one power, they cannot give one desk more light than the other.
         report = lamps.run(paths=1 << 14, group="all", tolerance=0.001).report
-        self.assertEqual((report.groups, report.all_goals_met), (1, 0))
+        self.assertEqual((report.groups, report.all_goals_satisfied), (1, 0))
         self.assertIn("goal", lamps.reason)
 
 

@@ -16,7 +16,7 @@ struct StylizeParams : Params<luxfer_stylize_params, LUXFER_STRUCT_STYLIZE_PARAM
 
     /// Fills the settings by a preset. If the value is no preset, every call with these settings fails.
     explicit StylizeParams(luxfer_stylize_preset preset) noexcept {
-        if (luxfer_stylize_get_preset(this, sizeof(luxfer_stylize_params), preset) != LUXFER_OK)
+        if (luxfer_stylize_get_preset(preset, this, sizeof(luxfer_stylize_params)) != LUXFER_OK)
             struct_size = 0;
     }
 };

@@ -183,7 +183,7 @@ LUXFER_FIT_LEAST_SQUARES = 1
 LUXFER_CONSTRAINT_EQUAL = 0
 LUXFER_CONSTRAINT_AT_LEAST = 1
 LUXFER_CONSTRAINT_AT_MOST = 2
-LUXFER_OUTCOME_MET = 0
+LUXFER_OUTCOME_SATISFIED = 0
 LUXFER_OUTCOME_TOO_BRIGHT = 1
 LUXFER_OUTCOME_DARK = 2
 LUXFER_OUTCOME_TOO_DIM = 3
@@ -730,8 +730,8 @@ class luxfer_mesh_info(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
         ("material", c_uint32),
-        ("vertex_count", c_size_t),
-        ("triangle_count", c_size_t),
+        ("vertex_count", c_uint64),
+        ("triangle_count", c_uint64),
         ("has_normals", c_uint32),
         ("uv_sets", c_uint32),
         ("has_colours", c_uint32),
@@ -1185,7 +1185,7 @@ class luxfer_lamps_report(Structure):
         ("groups", c_uint32),
         ("goals", c_uint32),
         ("paths", c_uint32),
-        ("all_goals_met", c_uint32),
+        ("all_goals_satisfied", c_uint32),
     ]
     result = types.LampsReport
 
@@ -1833,7 +1833,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_guides_start": (c_int32, [("guides", POINTER(luxfer_guides)), ("params", POINTER(luxfer_guides_params)), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_guides_get_image": (c_int32, [("guides", POINTER(luxfer_guides)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_guides_get_motion": (c_int32, [("guides", POINTER(luxfer_guides)), ("previous", POINTER(luxfer_guides)), ("motion", POINTER(POINTER(luxfer_image)))]),
-    "luxfer_stylize_get_preset": (c_int32, [("params", POINTER(luxfer_stylize_params)), ("size", c_size_t), ("preset", c_int32)]),
+    "luxfer_stylize_get_preset": (c_int32, [("preset", c_int32), ("params", POINTER(luxfer_stylize_params)), ("size", c_size_t)]),
     "luxfer_stylize_create": (c_int32, [("context", POINTER(luxfer_context)), ("stylize", POINTER(POINTER(luxfer_stylize)))]),
     "luxfer_stylize_set_artwork": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("artwork", POINTER(luxfer_image))]),
     "luxfer_stylize_add_guide": (c_int32, [("stylize", POINTER(luxfer_stylize)), ("name", c_char_p), ("source", POINTER(luxfer_image)), ("target", POINTER(luxfer_image)), ("weight", c_float), ("range", c_int32)]),

@@ -31,7 +31,7 @@ class Lamps(StageBase):
     >>> lamps.set_scene(room, material)
     >>> lamps.add_grid({"origin": (1, 0.8, 1), "across": (2, 0, 0), "down": (0, 0, 1)}, 500)
     >>> report = lamps.run(paths=4096).report
-    >>> report.lamps, report.all_goals_met, lamps.reason
+    >>> report.lamps, report.all_goals_satisfied, lamps.reason
     (1, 1, '')
     """
 

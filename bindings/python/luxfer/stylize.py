@@ -142,5 +142,5 @@ def preset(which: StylizePreset | str) -> StylizeParams:
 def _preset(which: StylizePreset | str) -> Any:
     settings = _abi.luxfer_stylize_params()
     which = _params.member(StylizePreset, which)
-    library.luxfer_stylize_get_preset(settings, ctypes.sizeof(settings), which)  # cannot fail for a member
+    library.luxfer_stylize_get_preset(which, settings, ctypes.sizeof(settings))  # cannot fail for a member
     return settings

@@ -479,8 +479,8 @@ class Fit(IntEnum):
 class Outcome(IntEnum):
     """Whether the target is met in a colour channel, and if not, the reason."""
 
-    MET = 0
-    """The target is met."""
+    SATISFIED = 0
+    """The target, or its limit, is met."""
     TOO_BRIGHT = 1
     """The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps,
     two goals contradict each other."""
@@ -2159,7 +2159,7 @@ class LampsReport:
     """Number of goals."""
     paths: int
     """Number of paths traced for each goal."""
-    all_goals_met: int
+    all_goals_satisfied: int
     """1 if all goals of positive weight are met, else 0: luxfer_lamps_get_reason then gives the reason."""
 
 

@@ -279,15 +279,15 @@ static void fit_map(luxfer_scene *lit, uint32_t mesh, uint32_t uv_set, texture *
     luxfer_mesh_info info;
     double m[3][5] = {{0}};
     float *positions, *uvs;
-    size_t i;
+    size_t i, vertices;
     int r, c, k;
     check(luxfer_scene_get_mesh(lit, mesh, &info, sizeof info), "mesh");
-    positions = (float *)allocate(3 * info.vertex_count, sizeof(float));
-    uvs = (float *)allocate(2 * info.vertex_count, sizeof(float));
-    check(luxfer_scene_read_vertices(lit, mesh, LUXFER_VERTEX_POSITION, positions, info.vertex_count), "mesh");
-    check(luxfer_scene_read_vertices(lit, mesh, uv_set ? LUXFER_VERTEX_UV_1 : LUXFER_VERTEX_UV_0, uvs,
-                                     info.vertex_count), "mesh");
-    for (i = 0; i < info.vertex_count; i++) { /* sum up the normal equations */
+    vertices = (size_t)info.vertex_count;
+    positions = (float *)allocate(3 * vertices, sizeof(float));
+    uvs = (float *)allocate(2 * vertices, sizeof(float));
+    check(luxfer_scene_read_vertices(lit, mesh, LUXFER_VERTEX_POSITION, positions, vertices), "mesh");
+    check(luxfer_scene_read_vertices(lit, mesh, uv_set ? LUXFER_VERTEX_UV_1 : LUXFER_VERTEX_UV_0, uvs, vertices), "mesh");
+    for (i = 0; i < vertices; i++) { /* sum up the normal equations */
         const double position[3] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
         double known[3] = {0, 0, 1};
         on_surface(&t->surface, position, known);
