@@ -97,7 +97,10 @@ def value(kind: str, words: list[str], path: str, files) -> str:
     if kind in ("settings", "fields"):
         if words[0] not in header.fields:
             raise PluginError(f"{path}: luxfer.h has no struct {words[0]}")
-        return header.table(words[0], path, ("struct_size", "reserved"))
+        table = header.table(words[0], path, ("struct_size", "reserved"))
+        if kind == "fields":
+            return table
+        return f"Fields of `{words[0]}`, with the defaults that `{words[0]}_init` sets:\n\n{table}"
     if kind == "limits":
         return limits(words[0], path)
     if kind == "constant":

@@ -86,6 +86,53 @@ luxfer_job *start(luxfer_render *render, std::uint32_t side, std::uint32_t sampl
 
 constexpr std::uint32_t endless = 1u << 20;
 
+// An inline function of the header fills its struct with the defaults of this struct: the defaults of a larger struct
+// would not fit, and a smaller struct could have one byte less.
+template <class Struct> void check_initialiser(luxfer_status (*init)(Struct *, std::size_t)) {
+    Struct settings;
+    std::memset(&settings, 0xa5, sizeof settings);
+    CHECK_OK(init(&settings, sizeof settings));
+    CHECK(settings.struct_size == sizeof settings);
+    CHECK_STATUS(init(&settings, sizeof settings - 1), LUXFER_INVALID_ARGUMENT);
+    CHECK_STATUS(init(nullptr, sizeof settings), LUXFER_INVALID_ARGUMENT);
+}
+
+void initialisers_fill_their_structs() {
+    check_initialiser(luxfer_context_params_init);
+    check_initialiser(luxfer_image_view_init);
+    check_initialiser(luxfer_merge_params_init);
+    check_initialiser(luxfer_scene_load_params_init);
+    check_initialiser(luxfer_material_params_init);
+    check_initialiser(luxfer_mesh_params_init);
+    check_initialiser(luxfer_camera_params_init);
+    check_initialiser(luxfer_light_params_init);
+    check_initialiser(luxfer_luminaire_params_init);
+    check_initialiser(luxfer_render_params_init);
+    check_initialiser(luxfer_rectify_params_init);
+    check_initialiser(luxfer_features_params_init);
+    check_initialiser(luxfer_segment_params_init);
+    check_initialiser(luxfer_emission_params_init);
+    check_initialiser(luxfer_relight_params_init);
+    check_initialiser(luxfer_pattern_params_init);
+    check_initialiser(luxfer_transfer_params_init);
+    check_initialiser(luxfer_illuminance_grid_init);
+    check_initialiser(luxfer_illuminance_params_init);
+    check_initialiser(luxfer_lamps_params_init);
+    check_initialiser(luxfer_importance_params_init);
+    check_initialiser(luxfer_placement_params_init);
+    check_initialiser(luxfer_gonio_params_init);
+    check_initialiser(luxfer_false_colour_params_init);
+    check_initialiser(luxfer_pendants_params_init);
+    check_initialiser(luxfer_guides_params_init);
+    luxfer_stylize_params style;
+    if (luxfer_stylize_params_init(&style, sizeof style) != LUXFER_UNSUPPORTED) // a build without stylisation
+        check_initialiser(luxfer_stylize_params_init);
+    check_initialiser(luxfer_sheet_params_init);
+    check_initialiser(luxfer_plan_params_init);
+    check_initialiser(luxfer_render_part_init);
+    check_initialiser(luxfer_demo_photo_params_init);
+}
+
 void versions_agree() {
     CHECK(luxfer_get_version() == LUXFER_VERSION);
     const std::string text = std::to_string(LUXFER_VERSION_MAJOR) + "." + std::to_string(LUXFER_VERSION_MINOR) + "." +
@@ -250,6 +297,7 @@ void threads_do_not_change_results() {
 } // namespace
 
 int main() {
+    initialisers_fill_their_structs();
     versions_agree();
     wrong_handles_are_errors();
     messages_belong_to_threads();
