@@ -32,7 +32,7 @@ GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$
 
 TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
-.PHONY: all lib demo format doc clippy deny msrv lint test bench trade blender studio studio-setup docs peers setup packages tools clean
+.PHONY: all lib demo format doc clippy deny advisories msrv lint test bench trade blender studio studio-setup docs peers setup packages tools clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -102,12 +102,16 @@ deny:
 	@if $(DENY) --version >/dev/null 2>&1; then $(DENY) --log-level error check bans licenses sources; \
 	  else echo "skipped: cargo deny is not installed"; fi
 
+# Known vulnerabilities of the dependencies, from the database on GitHub.
+FETCH_SECONDS ?= 60
+advisories:
+	@if $(DENY) --version >/dev/null 2>&1; then \
+	  if timeout $(FETCH_SECONDS) $(DENY) fetch db >/dev/null 2>&1; then $(DENY) --log-level error check advisories; \
+	  else echo "skipped: the database of vulnerabilities cannot be fetched"; fi; fi
+
 lint: CLIPPY_OF := --all-targets
 lint: format clippy doc
-	@$(MAKE) --no-print-directory deny
-	@if $(DENY) --version >/dev/null 2>&1; then \
-	  if timeout 60 $(DENY) fetch db >/dev/null 2>&1; then $(DENY) --log-level error check advisories; \
-	  else echo "skipped: the database of vulnerabilities cannot be fetched"; fi; fi
+	@$(MAKE) --no-print-directory deny advisories
 
 # Tools are downloaded while the library is built; checks of the source use the time in which the downloads wait.
 test: packages format
@@ -115,7 +119,7 @@ test: packages format
 	  nice $(MAKE) --no-print-directory clippy doc & source=$$!; nice $(MAKE) --no-print-directory msrv & oldest=$$!; \
 	  $(MAKE) --no-print-directory lib && wait $$tools && wait $$source && wait $$oldest || \
 	  { kill $$tools $$source $$oldest 2>/dev/null; exit 1; }
-	@$(MAKE) --no-print-directory deny
+	@$(MAKE) --no-print-directory deny advisories FETCH_SECONDS=10
 	$(CARGO) test
 	cmake -S . -B build -DCMAKE_BUILD_TYPE=Release
 	cmake --build build -j 2
