@@ -93,7 +93,7 @@ typedef int32_t luxfer_status;
 /** The operating system could not read or write a file, or the caller's write function returned an error. */
 #define LUXFER_IO 7
 
-/** A file is truncated, corrupt, or not what it claims to be. */
+/** A file is truncated or corrupt, or does not have the format that it claims. */
 #define LUXFER_FORMAT 8
 
 /** A result was requested before its job has succeeded, or a wait timed out. */
@@ -444,8 +444,8 @@ luxfer_status luxfer_image_create(luxfer_context *context,
  *
  * Load pictures with LUXFER_COLOUR_SRGB. Their colours are converted to linear Rec.709 from the colour space that the
  * file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and
- * COLORCORR of Radiance). If the file states none, integer samples are taken as sRGB and floating-point samples as
- * linear. luxfer_photo_metadata.colour tells which of these cases applied.
+ * COLORCORR of Radiance). If the file states no colour space, integer samples are taken as sRGB and floating-point
+ * samples as linear. luxfer_photo_metadata.colour tells which of these cases applied.
  *
  * Load data such as masks and depth with LUXFER_COLOUR_LINEAR. Their samples are not converted.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is damaged or of no known format; LUXFER_OUT_OF_MEMORY
@@ -606,8 +606,8 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
  * colours and luminances are lost; the merged image takes them from the shorter exposures. Pass it on as the photo.
  *
  * One of the photos is the reference. The merged image has its frame, its scale (the value 1 is its white) and its
- * metadata, so that luxfer_photo_metadata.white_luminance holds for the merged image too. Values above 1 are what the
- * reference shows clipped.
+ * metadata, so that luxfer_photo_metadata.white_luminance holds for the merged image too. Values above 1 are light
+ * that the reference clips.
  *
  * The photos must be linear once they are loaded, as developed raw files and photos with the sRGB curve are. Where a
  * camera applied another tone curve, the ratio of two exposures depends on the brightness, and lamps become too bright
@@ -629,9 +629,9 @@ typedef struct luxfer_merge_params {
     /** Index of the reference; -1, the default: the photo with the most pixels that are well exposed. */
     int32_t reference;
     /**
-     * 0, the default: where exposures disagree beyond noise, because something moved, only those are used that agree
-     * with the reference, or with the next shorter one that is not clipped where the reference is; 1: all are
-     * averaged.
+     * 0, the default: where exposures disagree beyond noise, because something moved, only the exposures are used that
+     * agree with the reference, or, where the reference is clipped, with the next shorter exposure that is not
+     * clipped; 1: all exposures are averaged.
      */
     uint32_t keep_moving;
     /**
@@ -657,8 +657,8 @@ static inline luxfer_status luxfer_merge_params_init(luxfer_merge_params *place,
 }
 
 /**
- * What luxfer_image_merge_exposures found. Arrays have an element for each photo, in the order of the photos; further
- * elements are 0.
+ * The exposures and shifts that luxfer_image_merge_exposures found. Arrays have an element for each photo, in the
+ * order of the photos; further elements are 0.
  */
 typedef struct luxfer_merge_report {
     /** sizeof(luxfer_merge_report), set by the function that fills the struct. */
@@ -670,8 +670,8 @@ typedef struct luxfer_merge_report {
     /** Reserved; always 0. */
     uint32_t reserved;
     /**
-     * Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values are lower bounds:
-     * those of the shortest exposure.
+     * Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values come from the
+     * shortest exposure and are lower bounds.
      */
     double clipped;
     /** Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is 1. */
@@ -682,9 +682,9 @@ typedef struct luxfer_merge_report {
     double errors[16];
     /** Exposure of each photo relative to the reference according to the metadata; 0 = unknown. */
     double stated[16];
-    /** Column of each photo that shows the same as column 0 of the reference. */
+    /** Column of each photo that shows the part of the view that column 0 of the reference shows. */
     int32_t shift_x[16];
-    /** Row of each photo that shows the same as row 0 of the reference. */
+    /** Row of each photo that shows the part of the view that row 0 of the reference shows. */
     int32_t shift_y[16];
 } luxfer_merge_report;
 

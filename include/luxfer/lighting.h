@@ -613,8 +613,8 @@ typedef struct luxfer_placement_params {
     double min_offset[2];
     /**
      * Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the default,
-     * allows every offset. If min_offset and max_offset are equal, the offset is fixed; the same holds for scale and
-     * rotation.
+     * allows every offset. If min_offset and max_offset are equal, the offset is fixed; equal bounds fix scale and
+     * rotation likewise.
      */
     double max_offset[2];
     /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
@@ -906,7 +906,7 @@ typedef struct luxfer_gonio_report {
 
 /**
  * Measures the distribution of count meshes of a scene, whose indices are in the array meshes; of all meshes if count
- * is 0, where meshes may be NULL. The intensities contain what the meshes hide from each other, reflect and transmit.
+ * is 0, where meshes may be NULL. The intensities account for the light that the meshes block, reflect and transmit.
  * Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
  *
  * The result is of absolute photometry, states no power and no colour, and its name is that of the first mesh with a
@@ -918,7 +918,7 @@ typedef struct luxfer_gonio_report {
  * caller releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
  * proportional to planes times angles times samples, seconds with the defaults. luxfer_job_start runs it as a job. Any
  * thread.
- * LUXFER_DEGENERATE if no mesh emits light, or if none leaves the meshes, as from a closed room;
+ * LUXFER_DEGENERATE if no mesh emits light, or if no light leaves the meshes, as from a closed room;
  * LUXFER_INVALID_ARGUMENT if a mesh does not exist, a setting is out of range, or the scene is not valid.
  */
 luxfer_status luxfer_scene_get_distribution(luxfer_scene *scene,
@@ -1074,8 +1074,8 @@ typedef struct luxfer_preset {
  *
  * The array drives receives the drive levels of the count LEDs, each in [0, max_drive]; max_drive is >= 0 and may be
  * infinite. If no mixture has the colour, the result is the mixture with the smallest squared difference in linear
- * RGB. If several mixtures have the colour, the result is the one with the smallest sum of squared drive levels. size
- * is sizeof *mixture. Any thread.
+ * RGB. If several mixtures have the colour, the result is the mixture with the smallest sum of squared drive levels.
+ * size is sizeof *mixture. Any thread.
  * LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
  */
 luxfer_status luxfer_mix_primaries(luxfer_context *context,
@@ -1186,7 +1186,7 @@ typedef struct luxfer_pendants_params {
     double suspension_error;
     /**
      * Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
-     * a rectification. Photo and masks must then be those of a lens without distortion.
+     * a rectification. Photo and masks must then be free of lens distortion.
      */
     double focal;
     /**
@@ -1321,10 +1321,10 @@ typedef struct luxfer_pendant {
  * the defaults.
  *
  * suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
- * there are none. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp has at most one
- * point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of lamps,
- * even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for a lamp,
- * and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
+ * no suspension is marked. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp has at
+ * most one point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of
+ * lamps, even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for
+ * a lamp, and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
  * LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not that
  * of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has succeeded;
  * LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting is out of range.

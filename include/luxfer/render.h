@@ -331,7 +331,7 @@ luxfer_status luxfer_render_set_emitter_as(luxfer_render *render,
                                            luxfer_emitter_as emitter_as);
 
 /**
- * Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for none. Any thread.
+ * Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for no AOV. Any thread.
  * LUXFER_INVALID_OPERATION while a job runs.
  */
 luxfer_status luxfer_render_set_aovs(luxfer_render *render, uint32_t flags);

@@ -466,7 +466,7 @@ typedef struct luxfer_mesh_params {
     size_t index_stride;
     /**
      * Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1]. They
-     * multiply the material's base colour and alpha. NULL, the default: none.
+     * multiply the material's base colour and alpha. NULL, the default: no colours.
      */
     const void *colours;
     /** Bytes from one colour to the next; at least 16, or 0, the default: packed. */
@@ -756,9 +756,9 @@ luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
 /**
  * Adds a luminaire to a scene: a light whose luminous intensity in each direction is given by the argument
  * distribution. *index, unless NULL, receives its index among the punctual lights. The luminaire shines from the faces
- * of its luminous opening. Faces that do not emit are black: they block light and reflect none. If the file of the
- * distribution states no size, or if params selects LUXFER_LUMINAIRE_POINT, the luminaire shines from a point instead,
- * and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be NULL for the defaults. Any thread.
+ * of its luminous opening. Faces that do not emit are black: they block light and do not reflect it. If the file of
+ * the distribution states no size, or if params selects LUXFER_LUMINAIRE_POINT, the luminaire shines from a point
+ * instead, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be NULL for the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,

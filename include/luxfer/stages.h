@@ -114,7 +114,7 @@ typedef struct luxfer_rectify_params {
      * Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
      * distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN, the
      * default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least two
-     * standard deviations, and the lines then meet better in vanishing points. 0: none is undone.
+     * standard deviations, and the lines then meet better in vanishing points. 0: no distortion is undone.
      */
     double distortion;
 } luxfer_rectify_params;
@@ -196,7 +196,7 @@ typedef struct luxfer_rectify_report {
     double squareness_errors[3];
     /**
      * The distortion that was undone: the field distortion of luxfer_rectify_params if it is set, or else the measured
-     * distortion or 0; 0 if none was undone.
+     * distortion or 0; 0 if no distortion was undone.
      */
     double undone;
 } luxfer_rectify_report;
@@ -387,7 +387,7 @@ typedef struct luxfer_features_report {
  * The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y, z, towards
  * the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the viewing axis, near is
  * near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are x right, y down, z forward:
- * those of the camera or, after luxfer_features_set_view, those of the room. luxfer_image_read reads up to four
+ * the axes of the camera or, after luxfer_features_set_view, of the room. luxfer_image_read reads up to four
  * channels at a time.
  */
 #define LUXFER_FEATURES_CHANNELS 0
@@ -551,8 +551,8 @@ typedef struct luxfer_segment_params {
      */
     double refine_tolerance;
     /**
-     * What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the subject is
-     * lamps, the settings above have no effect.
+     * Kind of object that the positive strokes mark: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the
+     * subject is lamps, the settings above have no effect.
      */
     luxfer_subject subject;
     /** Must be 0. */
@@ -610,8 +610,8 @@ typedef struct luxfer_segment_report {
 /**
  * A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the ten channels
  * of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the wall, the floor or the
- * ceiling that the positive strokes lie on. If the strokes lie on more than one of these, the mask is restricted to
- * those of its connected parts that positive strokes touch.
+ * ceiling that the positive strokes lie on. If the strokes lie on more than one of these, only those connected parts
+ * of the mask remain that positive strokes touch.
  */
 #define LUXFER_SUBJECT_SURFACE 1
 

@@ -765,9 +765,9 @@ typedef struct luxfer_warning {
 
 /**
  * The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast shadow if the
- * painted part of a half-painted picture has none. The new paint there is a guess. The severity is the share of such
- * pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place of
- * the target where most of them lie.
+ * painted part of a half-painted picture has no shadow. The new paint there is a guess. The severity is the share of
+ * such pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place
+ * of the target where most of them lie.
  */
 #define LUXFER_WARNING_LIGHT_NOT_PAINTED 29
 
@@ -815,7 +815,8 @@ const char *luxfer_warning_get_name(luxfer_warning_code code);
  * - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
  * - a luxfer_features;
  * - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
- * - a luxfer_emission: about the texture; none if luxfer_emission_start_composition has only composed a texture;
+ * - a luxfer_emission: about the texture; no warnings if luxfer_emission_start_composition has only composed a
+ *   texture;
  * - a luxfer_relight;
  * - a luxfer_guides: about the latest motion that luxfer_guides_get_motion has computed for it;
  * - a luxfer_stylize: about the exemplar, the light and the motion of its latest result;

@@ -96,8 +96,8 @@ versioned!(luxfer_preset, [64], {
 ///
 /// The array drives receives the drive levels of the count LEDs, each in [0, max_drive]; max_drive is >= 0 and may be
 /// infinite. If no mixture has the colour, the result is the mixture with the smallest squared difference in linear
-/// RGB. If several mixtures have the colour, the result is the one with the smallest sum of squared drive levels. size
-/// is sizeof *mixture. Any thread.
+/// RGB. If several mixtures have the colour, the result is the mixture with the smallest sum of squared drive levels.
+/// size is sizeof *mixture. Any thread.
 /// LUXFER_DEGENERATE if all primaries are black, LUXFER_INVALID_ARGUMENT if a number is out of range.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]

@@ -4,8 +4,8 @@
 //! colours and luminances are lost; the merged image takes them from the shorter exposures. Pass it on as the photo.
 //!
 //! One of the photos is the reference. The merged image has its frame, its scale (the value 1 is its white) and its
-//! metadata, so that luxfer_photo_metadata.white_luminance holds for the merged image too. Values above 1 are what the
-//! reference shows clipped.
+//! metadata, so that luxfer_photo_metadata.white_luminance holds for the merged image too. Values above 1 are light
+//! that the reference clips.
 //!
 //! The photos must be linear once they are loaded, as developed raw files and photos with the sRGB curve are. Where a
 //! camera applied another tone curve, the ratio of two exposures depends on the brightness, and lamps become too bright
@@ -44,9 +44,9 @@ pub struct luxfer_merge_params {
     pub source: luxfer_exposure_source,
     /// Index of the reference; -1, the default: the photo with the most pixels that are well exposed.
     pub reference: i32,
-    /// 0, the default: where exposures disagree beyond noise, because something moved, only those are used that agree
-    /// with the reference, or with the next shorter one that is not clipped where the reference is; 1: all are
-    /// averaged.
+    /// 0, the default: where exposures disagree beyond noise, because something moved, only the exposures are used that
+    /// agree with the reference, or, where the reference is clipped, with the next shorter exposure that is not
+    /// clipped; 1: all exposures are averaged.
     pub keep_moving: u32,
     /// Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
     /// default 0.03. 0: the photos are not aligned, as for a camera on a tripod.
@@ -105,8 +105,8 @@ impl luxfer_merge_params {
     }
 }
 
-/// What luxfer_image_merge_exposures found. Arrays have an element for each photo, in the order of the photos; further
-/// elements are 0.
+/// The exposures and shifts that luxfer_image_merge_exposures found. Arrays have an element for each photo, in the
+/// order of the photos; further elements are 0.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_merge_report {
@@ -118,8 +118,8 @@ pub struct luxfer_merge_report {
     pub reference: u32,
     /// Reserved; always 0.
     pub reserved: u32,
-    /// Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values are lower bounds:
-    /// those of the shortest exposure.
+    /// Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values come from the
+    /// shortest exposure and are lower bounds.
     pub clipped: f64,
     /// Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is 1.
     pub moved: f64,
@@ -129,9 +129,9 @@ pub struct luxfer_merge_report {
     pub errors: [f64; 16],
     /// Exposure of each photo relative to the reference according to the metadata; 0 = unknown.
     pub stated: [f64; 16],
-    /// Column of each photo that shows the same as column 0 of the reference.
+    /// Column of each photo that shows the part of the view that column 0 of the reference shows.
     pub shift_x: [i32; 16],
-    /// Row of each photo that shows the same as row 0 of the reference.
+    /// Row of each photo that shows the part of the view that row 0 of the reference shows.
     pub shift_y: [i32; 16],
 }
 

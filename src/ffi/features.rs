@@ -45,7 +45,7 @@ pub type luxfer_features_image = i32;
 /// The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y, z, towards
 /// the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the viewing axis, near is
 /// near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are x right, y down, z forward:
-/// those of the camera or, after luxfer_features_set_view, those of the room. luxfer_image_read reads up to four
+/// the axes of the camera or, after luxfer_features_set_view, of the room. luxfer_image_read reads up to four
 /// channels at a time.
 pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
 /// Confidence of the depth of each pixel, in [0, 1]; 1 channel.

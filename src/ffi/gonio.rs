@@ -74,7 +74,7 @@ versioned!(luxfer_gonio_report, [40], {
 });
 
 /// Measures the distribution of count meshes of a scene, whose indices are in the array meshes; of all meshes if count
-/// is 0, where meshes may be NULL. The intensities contain what the meshes hide from each other, reflect and transmit.
+/// is 0, where meshes may be NULL. The intensities account for the light that the meshes block, reflect and transmit.
 /// Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
 ///
 /// The result is of absolute photometry, states no power and no colour, and its name is that of the first mesh with a
@@ -86,7 +86,7 @@ versioned!(luxfer_gonio_report, [40], {
 /// caller releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
 /// proportional to planes times angles times samples, seconds with the defaults. luxfer_job_start runs it as a job. Any
 /// thread.
-/// LUXFER_DEGENERATE if no mesh emits light, or if none leaves the meshes, as from a closed room;
+/// LUXFER_DEGENERATE if no mesh emits light, or if no light leaves the meshes, as from a closed room;
 /// LUXFER_INVALID_ARGUMENT if a mesh does not exist, a setting is out of range, or the scene is not valid.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_distribution(

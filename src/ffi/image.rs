@@ -313,8 +313,8 @@ pub unsafe extern "C" fn luxfer_image_create(
 ///
 /// Load pictures with LUXFER_COLOUR_SRGB. Their colours are converted to linear Rec.709 from the colour space that the
 /// file states (ICC profile; cICP, sRGB, gAMA and cHRM of PNG; EXIF; chromaticities of OpenEXR; PRIMARIES, EXPOSURE and
-/// COLORCORR of Radiance). If the file states none, integer samples are taken as sRGB and floating-point samples as
-/// linear. luxfer_photo_metadata.colour tells which of these cases applied.
+/// COLORCORR of Radiance). If the file states no colour space, integer samples are taken as sRGB and floating-point
+/// samples as linear. luxfer_photo_metadata.colour tells which of these cases applied.
 ///
 /// Load data such as masks and depth with LUXFER_COLOUR_LINEAR. Their samples are not converted.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is damaged or of no known format; LUXFER_OUT_OF_MEMORY

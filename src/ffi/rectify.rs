@@ -111,7 +111,7 @@ pub struct luxfer_rectify_params {
     /// Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
     /// distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN, the
     /// default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least two
-    /// standard deviations, and the lines then meet better in vanishing points. 0: none is undone.
+    /// standard deviations, and the lines then meet better in vanishing points. 0: no distortion is undone.
     pub distortion: f64,
 }
 
@@ -232,7 +232,7 @@ pub struct luxfer_rectify_report {
     /// Standard deviations of the field squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
     /// The distortion that was undone: the field distortion of luxfer_rectify_params if it is set, or else the measured
-    /// distortion or 0; 0 if none was undone.
+    /// distortion or 0; 0 if no distortion was undone.
     pub undone: f64,
 }
 

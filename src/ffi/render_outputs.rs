@@ -138,7 +138,7 @@ pub unsafe extern "C" fn luxfer_render_set_emitter_as(
     })
 }
 
-/// Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for none. Any thread.
+/// Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for no AOV. Any thread.
 /// LUXFER_INVALID_OPERATION while a job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_aovs(render: *mut luxfer_render, flags: u32) -> luxfer_status {

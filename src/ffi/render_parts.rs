@@ -153,8 +153,8 @@ pub unsafe extern "C" fn luxfer_render_clear_parts(render: *mut luxfer_render) -
 }
 
 /// Starts a job that merges the files of luxfer_render_add_part. Afterwards the merged images and layers can be read by
-/// the same functions as those of luxfer_render_start. params may be NULL for the defaults. The caller releases *job.
-/// Any thread.
+/// the functions that read the results of luxfer_render_start. params may be NULL for the defaults. The caller releases
+/// *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
 /// and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or
 /// another scene, if parts overlap, or if paths are missing: the message names the first gap; LUXFER_IO or

@@ -183,9 +183,9 @@ pub(super) fn axes(place: &str, axis: [f32; 3], c0: [f32; 3]) -> Result<[Vec3; 2
 
 /// Adds a luminaire to a scene: a light whose luminous intensity in each direction is given by the argument
 /// distribution. *index, unless NULL, receives its index among the punctual lights. The luminaire shines from the faces
-/// of its luminous opening. Faces that do not emit are black: they block light and reflect none. If the file of the
-/// distribution states no size, or if params selects LUXFER_LUMINAIRE_POINT, the luminaire shines from a point instead,
-/// and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be NULL for the defaults. Any thread.
+/// of its luminous opening. Faces that do not emit are black: they block light and do not reflect it. If the file of
+/// the distribution states no size, or if params selects LUXFER_LUMINAIRE_POINT, the luminaire shines from a point
+/// instead, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be NULL for the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(

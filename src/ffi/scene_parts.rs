@@ -47,7 +47,7 @@ pub struct luxfer_mesh_params {
     /// Bytes from one triangle to the next; at least 12, or 0, the default: packed.
     pub index_stride: usize,
     /// Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1]. They
-    /// multiply the material's base colour and alpha. NULL, the default: none.
+    /// multiply the material's base colour and alpha. NULL, the default: no colours.
     pub colours: *const c_void,
     /// Bytes from one colour to the next; at least 16, or 0, the default: packed.
     pub colour_stride: usize,

@@ -42,8 +42,8 @@ pub type luxfer_subject = i32;
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the ten channels
 /// of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the wall, the floor or the
-/// ceiling that the positive strokes lie on. If the strokes lie on more than one of these, the mask is restricted to
-/// those of its connected parts that positive strokes touch.
+/// ceiling that the positive strokes lie on. If the strokes lie on more than one of these, only those connected parts
+/// of the mask remain that positive strokes touch.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
 /// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one lamp
 /// or more. Regions without a stroke that resemble the marked lamps and lie in the mask of luxfer_segment_set_region
@@ -78,8 +78,8 @@ pub struct luxfer_segment_params {
     /// Difference between neighbouring pixels in the first three channels below which the refinement treats them as one
     /// surface. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
-    /// What the positive strokes lie on: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the subject is
-    /// lamps, the settings above have no effect.
+    /// Kind of object that the positive strokes mark: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the
+    /// subject is lamps, the settings above have no effect.
     pub subject: luxfer_subject,
     /// Must be 0.
     pub reserved: u32,

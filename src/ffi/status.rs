@@ -25,7 +25,7 @@ pub const LUXFER_UNSUPPORTED: luxfer_status = 5;
 pub const LUXFER_CANCELLED: luxfer_status = 6;
 /// The operating system could not read or write a file, or the caller's write function returned an error.
 pub const LUXFER_IO: luxfer_status = 7;
-/// A file is truncated, corrupt, or not what it claims to be.
+/// A file is truncated or corrupt, or does not have the format that it claims.
 pub const LUXFER_FORMAT: luxfer_status = 8;
 /// A result was requested before its job has succeeded, or a wait timed out.
 pub const LUXFER_NOT_READY: luxfer_status = 9;

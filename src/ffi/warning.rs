@@ -121,9 +121,9 @@ pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
 /// largest error.
 pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
 /// The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast shadow if the
-/// painted part of a half-painted picture has none. The new paint there is a guess. The severity is the share of such
-/// pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place of
-/// the target where most of them lie.
+/// painted part of a half-painted picture has no shadow. The new paint there is a guess. The severity is the share of
+/// such pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place
+/// of the target where most of them lie.
 pub const LUXFER_WARNING_LIGHT_NOT_PAINTED: luxfer_warning_code = 29;
 /// Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The severity is
 /// the share of the exemplar that such places cover. The warning points to one of them in the artwork.

@@ -15,7 +15,8 @@ use std::ffi::c_void;
 /// - a luxfer_rectify: about the camera, and about the plane if it has been unwarped;
 /// - a luxfer_features;
 /// - a luxfer_segment: its mask, compared with the strokes and with the region as they are now;
-/// - a luxfer_emission: about the texture; none if luxfer_emission_start_composition has only composed a texture;
+/// - a luxfer_emission: about the texture; no warnings if luxfer_emission_start_composition has only composed a
+///   texture;
 /// - a luxfer_relight;
 /// - a luxfer_guides: about the latest motion that luxfer_guides_get_motion has computed for it;
 /// - a luxfer_stylize: about the exemplar, the light and the motion of its latest result;

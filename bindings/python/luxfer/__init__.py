@@ -129,7 +129,7 @@ def _module_of(name: str) -> str:
 
 
 def __getattr__(name: str) -> Any:
-    """Imports what is first used, with its module: `luxfer --help` needs neither numpy nor the library."""
+    """Imports a name, with its module, when it is first used: `luxfer --help` needs neither numpy nor the library."""
     if name == "__version__":
         abi = importlib.import_module("._abi", __name__)
         value: Any = f"{abi.LUXFER_VERSION_MAJOR}.{abi.LUXFER_VERSION_MINOR}.{abi.LUXFER_VERSION_PATCH}"

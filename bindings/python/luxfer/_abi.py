@@ -488,8 +488,8 @@ class luxfer_merge_params(Structure):
 
 
 class luxfer_merge_report(Structure):
-    """What luxfer_image_merge_exposures found. Arrays have an element for each photo, in the order of the
-    photos; further elements are 0."""
+    """The exposures and shifts that luxfer_image_merge_exposures found. Arrays have an element for each photo,
+    in the order of the photos; further elements are 0."""
 
     _fields_ = [
         ("struct_size", c_uint32),

@@ -85,7 +85,7 @@ class Transfer(StageBase):
 
     def set_zones(self, zones: ArrayLike) -> None:
         """Sets rectangles (n, 4) of the surface that stay without lamps: u0, v0, u1, v1 in metres from the surface's
-        corner along its axes. They replace those of earlier calls."""
+        corner along its axes. They replace the zones of earlier calls."""
         values = np.ascontiguousarray(zones, np.float64).reshape(-1, 4)
         self._call("set_zones", values.ctypes.data_as(POINTER(ctypes.c_double)), len(values))
 

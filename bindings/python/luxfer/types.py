@@ -31,7 +31,7 @@ class Status(IntEnum):
     IO = 7
     """The operating system could not read or write a file, or the caller's write function returned an error."""
     FORMAT = 8
-    """A file is truncated, corrupt, or not what it claims to be."""
+    """A file is truncated or corrupt, or does not have the format that it claims."""
     NOT_READY = 9
     """A result was requested before its job has succeeded, or a wait timed out."""
     INTERNAL = 10
@@ -343,7 +343,7 @@ class FeaturesImage(IntEnum):
     """The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y,
     z, towards the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the
     viewing axis, near is near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are
-    x right, y down, z forward: those of the camera or, after luxfer_features_set_view, those of the room.
+    x right, y down, z forward: the axes of the camera or, after luxfer_features_set_view, of the room.
     luxfer_image_read reads up to four channels at a time."""
     DEPTH_CONFIDENCE = 1
     """Confidence of the depth of each pixel, in [0, 1]; 1 channel."""
@@ -375,7 +375,7 @@ class Subject(IntEnum):
     """A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the
     ten channels of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the
     wall, the floor or the ceiling that the positive strokes lie on. If the strokes lie on more than one of
-    these, the mask is restricted to those of its connected parts that positive strokes touch."""
+    these, only those connected parts of the mask remain that positive strokes touch."""
     LAMPS = 2
     """Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks
     one lamp or more. Regions without a stroke that resemble the marked lamps and lie in the mask of
@@ -685,9 +685,9 @@ class WarningCode(IntEnum):
     compared. The warning points to the pixel with the largest error."""
     LIGHT_NOT_PAINTED = 29
     """The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast
-    shadow if the painted part of a half-painted picture has none. The new paint there is a guess. The severity
-    is the share of such pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The warning
-    points to the place of the target where most of them lie."""
+    shadow if the painted part of a half-painted picture has no shadow. The new paint there is a guess. The
+    severity is the share of such pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The
+    warning points to the place of the target where most of them lie."""
     AMBIGUOUS_PAINT = 30
     """Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The
     severity is the share of the exemplar that such places cover. The warning points to one of them in the
@@ -1117,9 +1117,9 @@ class MergeParams(TypedDict, total=False):
     reference: int
     """Index of the reference; -1, the default: the photo with the most pixels that are well exposed."""
     keep_moving: int
-    """0, the default: where exposures disagree beyond noise, because something moved, only those are used that
-    agree with the reference, or with the next shorter one that is not clipped where the reference is; 1: all
-    are averaged."""
+    """0, the default: where exposures disagree beyond noise, because something moved, only the exposures are
+    used that agree with the reference, or, where the reference is clipped, with the next shorter exposure that
+    is not clipped; 1: all exposures are averaged."""
     max_shift: float
     """Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
     default 0.03. 0: the photos are not aligned, as for a camera on a tripod."""
@@ -1133,16 +1133,16 @@ class MergeParams(TypedDict, total=False):
 
 @dataclass(frozen=True)
 class MergeReport:
-    """What luxfer_image_merge_exposures found. Arrays have an element for each photo, in the order of the
-    photos; further elements are 0."""
+    """The exposures and shifts that luxfer_image_merge_exposures found. Arrays have an element for each photo,
+    in the order of the photos; further elements are 0."""
 
     count: int
     """Number of photos."""
     reference: int
     """Index of the reference."""
     clipped: float
-    """Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values are lower
-    bounds: those of the shortest exposure."""
+    """Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values come from the
+    shortest exposure and are lower bounds."""
     moved: float
     """Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is
     1."""
@@ -1153,9 +1153,9 @@ class MergeReport:
     stated: tuple[float, ...]
     """Exposure of each photo relative to the reference according to the metadata; 0 = unknown."""
     shift_x: tuple[int, ...]
-    """Column of each photo that shows the same as column 0 of the reference."""
+    """Column of each photo that shows the part of the view that column 0 of the reference shows."""
     shift_y: tuple[int, ...]
-    """Row of each photo that shows the same as row 0 of the reference."""
+    """Row of each photo that shows the part of the view that row 0 of the reference shows."""
 
 
 @dataclass(frozen=True)
@@ -1301,7 +1301,7 @@ class MeshParams(TypedDict, total=False):
     """Bytes from one triangle to the next; at least 12, or 0, the default: packed."""
     colours: int
     """Colours of the vertices: red, green, blue and alpha as four floats per vertex, linear, each in [0, 1].
-    They multiply the material's base colour and alpha. None, the default: none."""
+    They multiply the material's base colour and alpha. None, the default: no colours."""
     colour_stride: int
     """Bytes from one colour to the next; at least 16, or 0, the default: packed."""
 
@@ -1594,7 +1594,7 @@ class RectifyParams(TypedDict, total=False):
     """Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
     distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN,
     the default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least
-    two standard deviations, and the lines then meet better in vanishing points. 0: none is undone."""
+    two standard deviations, and the lines then meet better in vanishing points. 0: no distortion is undone."""
 
 
 @dataclass(frozen=True)
@@ -1650,7 +1650,7 @@ class RectifyReport:
     """Standard deviations of the field squareness; NaN where squareness is NaN."""
     undone: float
     """The distortion that was undone: the field distortion of RectifyParams if it is set, or else the measured
-    distortion or 0; 0 if none was undone."""
+    distortion or 0; 0 if no distortion was undone."""
 
 
 class FeaturesParams(TypedDict, total=False):
@@ -1707,8 +1707,8 @@ class SegmentParams(TypedDict, total=False):
     """Difference between neighbouring pixels in the first three channels below which the refinement treats them
     as one surface. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8."""
     subject: Subject | str | int
-    """What the positive strokes lie on: Subject; default Subject.AUTO. If the subject is lamps, the settings
-    above have no effect."""
+    """Kind of object that the positive strokes mark: Subject; default Subject.AUTO. If the subject is lamps,
+    the settings above have no effect."""
 
 
 @dataclass(frozen=True)
@@ -2268,8 +2268,8 @@ class PlacementParams(TypedDict, total=False):
     """Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5."""
     max_offset: Sequence[float]
     """Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the
-    default, allows every offset. If min_offset and max_offset are equal, the offset is fixed; the same holds
-    for scale and rotation."""
+    default, allows every offset. If min_offset and max_offset are equal, the offset is fixed; equal bounds fix
+    scale and rotation likewise."""
     min_scale: Sequence[float]
     """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
     max_scale: Sequence[float]
@@ -2499,7 +2499,7 @@ class PendantsParams(TypedDict, total=False):
     """Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1."""
     focal: float
     """Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not
-    used with a rectification. Photo and masks must then be those of a lens without distortion."""
+    used with a rectification. Photo and masks must then be free of lens distortion."""
     focal_error: float
     """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0
     stands for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It

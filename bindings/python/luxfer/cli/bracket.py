@@ -22,8 +22,8 @@ def add(parser: argparse.ArgumentParser) -> None:
         "--exposures",
         nargs="+",
         metavar="FILE",
-        help="further exposures of PHOTO's view, in any order: what PHOTO shows clipped, such as lamps, comes from the "
-        "shorter ones; give it after PHOTO and SCENE",
+        help="further exposures of PHOTO's view, in any order: parts that PHOTO clips, such as lamps, come from the "
+        "shorter exposures; give it after PHOTO and SCENE",
     )
 
 
@@ -39,7 +39,7 @@ def load(context: Context, photo: str, exposures: list[str] | None) -> tuple[Ima
 
 
 def facts(report: MergeReport) -> dict[str, Any]:
-    """Returns what the merge found in the form in which JSON shows it."""
+    """Returns the findings of the merge in the form in which JSON shows them."""
     return {
         "exposures": list(report.exposures),
         "exposure_errors": list(report.errors),

@@ -28,7 +28,7 @@ ADVICE = {
     "FOCAL_ASSUMED": "try a photo that shows two walls",
     "VIEW_UNCERTAIN": "try a photo with more straight edges along the room",
     "UNSEEN": "try one more stroke there; --preview-masks masks.png shows the place",
-    "UNCERTAIN_MASK": "try a stroke on what the mask takes for another surface; --preview-masks masks.png shows it",
+    "UNCERTAIN_MASK": "try a stroke on the part taken for another surface; --preview-masks masks.png shows it",
     "MISSED_STROKES": "the classes look alike: try more strokes on both; --preview-masks masks.png shows the mask",
     "MAGNIFIED": "try a photo of more pixels, or one that looks more towards the plane",
     "NO_LATTICE": "try strokes on the lamps that the mask leaves out, if the lamps are regular",

@@ -117,7 +117,7 @@ def _places(args: argparse.Namespace, console: Console) -> Exit:
 
 
 def _known_places(args: argparse.Namespace) -> Sequence[Place]:
-    """Returns the places of the user's file, or those that the package knows."""
+    """Returns the places of the user's file, or the places that the package knows."""
     from ..design.standard import PLACES, places_from
 
     if args.places_from is None:

@@ -129,7 +129,7 @@ def check_surface(scene: Scene, name: str) -> None:
 
 
 def shared_input(*names: str | None) -> list[Path]:
-    """Returns the paths of the input files among `names`: options that were not given and demo:NAME are none."""
+    """Returns the paths of the input files among `names`; leaves out options that were not given, and demo:NAME."""
     return [Path(n) for n in names if n and not n.startswith(DEMO)]
 
 
@@ -151,7 +151,7 @@ def check_file(option: str, name: str, inputs: list[Path], kinds: tuple[str, ...
 
 
 def check_folder(option: str, name: str, inputs: list[Path], files: tuple[str, ...]) -> Path:
-    """Checks an output folder, which need not exist yet: none of its files may be an input."""
+    """Checks an output folder, which need not exist yet: no file in it may be an input."""
     folder = Path(name)
     if folder.exists() and not folder.is_dir():
         raise usage(f"{option}: {name} is a file, not a folder")

@@ -1,4 +1,4 @@
-"""Say what is in a scene, a picture or a luminaire file (.ies, .ldt, .xml, .gldf)."""
+"""List the contents of a scene, a picture or a luminaire file (.ies, .ldt, .xml, .gldf)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from ..context import Context
     from ..scene import Scene
 
-SUMMARY = "what is in a scene, a picture or a luminaire file"
+SUMMARY = "contents of a scene, a picture or a luminaire file"
 
 #: Number of cameras, meshes and surfaces that are listed in words; JSON lists all.
 LISTED = 8
@@ -190,7 +190,7 @@ def of_luminaire(context: Context, name: str) -> dict[str, Any]:
 
 
 def variants_of(context: Context, name: str, count: int) -> list[str | None]:
-    """Returns the names of the variants in a GLDF file; None for those that cannot be read."""
+    """Returns the names of the variants in a GLDF file; None for variants that cannot be read."""
     from .. import Distribution
     from ..errors import Error
     from ..photometry import luminaire_path

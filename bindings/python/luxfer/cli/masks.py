@@ -58,7 +58,7 @@ class Masks:
         linear = np.clip(self.photo.numpy()[:, :, :3], 0, 1)
         grey = linear @ np.array(LUMINANCE, np.float32) if linear.shape[2] == 3 else linear[:, :, 0]
         code = 255 * np.where(grey <= 0.0031308, 12.92 * grey, 1.055 * np.maximum(grey, 1e-6) ** (1 / 2.4) - 0.055)
-        # Keep some of the photo's darkness under the tints, so that what a mask covers can still be seen.
+        # Keep some of the photo's darkness under the tints, so that the photo can still be seen under a mask.
         shown = np.repeat((0.75 * code + 20)[:, :, None], 3, axis=2)
         for mask, colour, share in ((self.plane, GREEN, TINT["plane"]), (self.lights, YELLOW, TINT["lights"])):
             tint = share * (mask > 0.5)[:, :, None]

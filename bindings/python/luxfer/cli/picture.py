@@ -59,7 +59,7 @@ class Goal:
 
 
 def camera_of(scene: Scene, wanted: Camera | None) -> CameraParams:
-    """Returns the settings of the camera that --camera states, or else of the first one."""
+    """Returns the settings of the camera that --camera states, or else of the scene's first camera."""
     count = scene.counts.cameras
     if wanted is not None and wanted.index is None:
         return {"position": wanted.position, "target": wanted.target, "fov_y": wanted.fov_y or 1.0}

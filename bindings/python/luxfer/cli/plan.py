@@ -15,7 +15,7 @@ from .exits import Exit, usage
 if TYPE_CHECKING:
     from ..plan import Plan
 
-SUMMARY = "what an error or a time would cost"
+SUMMARY = "predicted time for an error, or error for a time"
 
 #: Errors of the table.
 ERRORS = (0.1, 0.05, 0.02, 0.01)
@@ -26,7 +26,9 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help=options.SCENE)
     parser.add_argument("--photo", metavar="PHOTO", help="plan a transfer of this photo's light")
     parser.add_argument("--strokes", metavar="FILE", help="strokes on the photo, as for `luxfer transfer`")
-    parser.add_argument("--surface", metavar="NAME", help="what receives the lights; default: the likeliest ceiling")
+    parser.add_argument(
+        "--surface", metavar="NAME", help="surface that receives the lights; default: the likeliest ceiling"
+    )
     goal = parser.add_mutually_exclusive_group()
     goal.add_argument(
         "--error", type=values.share, metavar="SHARE", help="noise of the picture, such as 2%%: how long?"

@@ -113,7 +113,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return console.fail(failure.code, str(failure))
     except KeyboardInterrupt:
         return console.fail(Exit.CANCELLED, "cancelled" + console.kept())
-    except BrokenPipeError:  # whoever reads the output, such as head, has seen enough
+    except BrokenPipeError:  # the reader of the output, such as head, has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return int(Exit.FINE)
     except Exception as error:

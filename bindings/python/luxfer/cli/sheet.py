@@ -26,7 +26,11 @@ UNEVEN = 2.0
 def add(parser: argparse.ArgumentParser) -> None:
     """The options."""
     parts = parser.add_subparsers(
-        dest="part", metavar="print|read", required=True, parser_class=type(parser), help="which half of the work"
+        dest="part",
+        metavar="print|read",
+        required=True,
+        parser_class=type(parser),
+        help="print the sheet, or read a photo of it",
     )
     for name, text in (("print", "draw a sheet"), ("read", "align a photo of a painted sheet")):
         own = parts.add_parser(name, help=text, description=f"{text.capitalize()}.")

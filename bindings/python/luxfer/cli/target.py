@@ -24,7 +24,7 @@ COLUMNS = (
     "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind"
 )
 
-#: Seed of the paths that measure the illuminance after --lux; they are independent of those that set the factor.
+#: Seed of the paths that measure the illuminance after --lux; they are independent of the paths that set the factor.
 #: [convention]
 RECHECK_SEED = 2
 

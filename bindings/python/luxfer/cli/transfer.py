@@ -174,7 +174,7 @@ def light(
 
     warnings = start.warnings + described_stages(transfer.warnings)
     result = facts(transfer, start, lit, masks)
-    if goal.is_budget:  # what is left of the time, after --lux too
+    if goal.is_budget:  # the rest of the time, after --lux too
         left = goal.seconds - (time.monotonic() - console.began)
         settings["time_budget_ms"] = max(200, round(1000 * left))
     found = render(args, console, lit, settings, goal)

@@ -2,8 +2,8 @@
 walls, ceiling, and cylindrical illuminance in the room.
 
 A grid has cells that are nearly square, with a point at the centre of each. Their size follows the standard's
-`p = 0.2 · 5^log10(d)`, where d is the longer side of the area, or the shorter one if the longer is at least twice as
-long.
+`p = 0.2 · 5^log10(d)`, where d is the longer side of the area, or the shorter side if the longer one is at least twice
+as long.
 """
 
 from __future__ import annotations
@@ -36,15 +36,15 @@ OFFSET, DEPTH = 0.01, 0.05
 CARPET = 0.03
 #: A wall is looked for from this distance, in metres, so that furniture in front of it hides it. [convention]
 LOOK = 1.0
-#: Share of the rays that must meet a plane for it to be the wall. [convention]
+#: Smallest share of the rays that must meet a plane for the plane to count as the wall. [convention]
 WALL_SHARE = 0.15
-#: Vertical planes around a point whose mean illuminance is the cylindrical one. An odd number is as good as twice as
-#: many.
+#: Number of vertical planes around a point. Their mean illuminance stands for the cylindrical illuminance. An odd
+#: number gives the accuracy of twice this number.
 #: [convention]
 PLANES = 9
-#: Largest relative error of that mean, for one small source in the worst direction: 1.02 %.
+#: Largest relative error of the mean over these planes, 1.02 %: one small source in the worst direction has this error.
 PLANES_ERROR = 1 - math.pi / (2 * PLANES) / math.tan(math.pi / (2 * PLANES))
-#: Where the four walls are in the plan, in the order of `walls`.
+#: Places of the four walls in the plan, in the order of `walls`.
 WALLS = ("along the upper side of the plan", "along its lower side", "along its left side", "along its right side")
 
 
@@ -114,15 +114,15 @@ class Area:
     """ "task", "surrounding", "background", "walls", "ceiling", "cylindrical", or, of emergency light, "escape line",
     "escape band" or "open area"."""
     patches: tuple[Patch, ...]
-    """Its rectangles; of cylindrical illuminance the same points once for each plane."""
+    """Its rectangles; of cylindrical illuminance one for each plane, all with equal points."""
     height: float
-    """Height above the floor in metres; of walls that of their lower edge."""
+    """Height above the floor in metres; of walls the height of their lower edge."""
     outline: tuple[tuple[float, float, float, float], ...]
     """Rectangles of the plan, a0, b0, a1, b1 in metres, for drawings; empty for walls."""
     dropped: tuple[Patch, ...] = ()
-    """Rectangles none of whose points belong to the area, so that nothing is computed for them."""
+    """Rectangles without a point that belongs to the area; nothing is computed for them."""
     notes: tuple[str, ...] = ()
-    """What to know about the area, such as a wall without points."""
+    """A note about the area, such as that a wall has no points."""
 
     @property
     def weights(self) -> NDArray[np.float64]:
@@ -146,8 +146,8 @@ class Area:
 
 
 def task(room: Room, name: str, rectangle: Sequence[float], height: float, unit: str = "m") -> Area:
-    """A horizontal task area: a0, b0, a1, b1 in the room's plan and its height above the floor, in that unit. One on
-    the floor lies as high above it as the background."""
+    """A horizontal task area: a0, b0, a1, b1 in the room's plan and its height above the floor, in that unit. A task
+    area on the floor lies as high above it as the background does."""
     a0, b0, a1, b1, level = metres([*rectangle, height], unit)
     level = CARPET if 0 <= level < CARPET else level
     if not (a1 > a0 and b1 > b0):
@@ -164,8 +164,8 @@ def task(room: Room, name: str, rectangle: Sequence[float], height: float, unit:
 
 
 def task_on(room: Room, name: str, objects: str, lift: float = 0.01) -> Area:
-    """The task area on top of objects of the scene with that name, such as "Desk": their bounding rectangle in the
-    plan, at their highest point plus `lift` metres."""
+    """The task area on top of the objects of the scene that have this name, such as "Desk": their bounding rectangle in
+    the plan, at their highest point plus `lift` metres."""
     scene = room.scene
     meshes = [m for m in range(scene.counts.meshes) if scene.mesh_name(m) == objects]
     if not meshes:
@@ -189,7 +189,8 @@ def surrounding(room: Room, of: Area, name: str | None = None, band: float = BAN
 
 
 def background(room: Room, tasks: Sequence[Area] = (), name: str = "background", border: float = BORDER) -> Area:
-    """The floor without a strip along the walls, without task and surrounding areas, and where people can walk."""
+    """The part of the floor where people can walk, without a strip along the walls and without task and surrounding
+    areas."""
     rectangle = _within(room, border)
     area = _made(name, "background", room, [rectangle], CARPET, clearance=WALKING)
     patch = area.patches[0]
@@ -226,8 +227,8 @@ def horizontal(area: Area) -> Area:
 def walls(
     room: Room, name: str = "walls", without: Sequence[str] = ("window", "glass", "frame", "door", "curtain")
 ) -> Area:
-    """The four walls, without what lies deeper or in front of them, such as windows, pictures and cupboards, and
-    without objects whose name contains one of these words."""
+    """The four walls, without the parts that lie behind or in front of them, such as windows, pictures and cupboards,
+    and without objects whose name contains one of these words."""
     sides = (
         (room.world([(0, 0)])[0], room.along * room.length, room.across),
         (room.world([(0, room.width)])[0], room.along * room.length, -room.across),
@@ -245,10 +246,11 @@ def walls(
 
 
 def thinned(area: Area, count: int) -> Area:
-    """The area with about that number of its points at most, evenly spread, to estimate means with."""
+    """The area with at most about this number of its points, evenly spread, from which means are estimated."""
     if area.count <= count:
         return area
-    # Multiples of the golden ratio and its like in two dimensions are spread evenly. [convention: Roberts' R2 sequence]
+    # Multiples of the golden ratio, or of its generalisation to two dimensions, are evenly spread. [convention:
+    # Roberts' R2 sequence]
     share, patches = count / area.count, []
     for patch in area.patches:
         rows, columns = np.indices(patch.keep.shape)
@@ -259,8 +261,8 @@ def thinned(area: Area, count: int) -> Area:
 
 
 def around_tasks(room: Room, tasks: Sequence[Area]) -> list[Area]:
-    """The surrounding areas of tasks, the background, walls, ceiling and cylindrical illuminance, as far as the room
-    has room for them: a task that fills it has no surrounding area, and a small room no background."""
+    """The surrounding areas of tasks, the background, walls, ceiling and cylindrical illuminance, as far as they have
+    space in the room: a task that fills the room has no surrounding area, and a small room has no background."""
     out: list[Area] = []
     for make in (
         *(lambda of=t: surrounding(room, of) for t in tasks),
@@ -295,7 +297,8 @@ def _wall(
     names = {m: room.scene.mesh_name(m).lower() for m in set(hits["mesh"][np.isfinite(distance)].tolist())}
     wanted = [m in names and not any(w in names[m] for w in without) for m in hits["mesh"].tolist()]
     distance[~np.array(wanted)] = np.inf
-    # The wall is the farthest plane that a good part of the rays meet; furniture and pictures lie in front of it.
+    # The wall is the farthest plane that a sufficient share of the rays meets; furniture and pictures lie in front of
+    # it.
     bins = np.round(distance[distance < 2 * step] / OFFSET)
     planes = [
         v * OFFSET for v in sorted(set(bins), reverse=True) if (abs(bins - v) <= 1).sum() >= WALL_SHARE * whole.size
@@ -310,7 +313,7 @@ def _wall(
 
 
 def _within(room: Room, border: float) -> tuple[float, float, float, float]:
-    """The floor without a strip; without one where the room is too narrow for it."""
+    """The floor without a strip along the walls, or the whole floor if the room is too narrow for the strip."""
     a = border if room.length > 3 * border else 0.0
     b = border if room.width > 3 * border else 0.0
     return a, b, room.length - a, room.width - b
@@ -355,8 +358,8 @@ def fine(
     steps: tuple[int, int],
     clearance: float = 0,
 ) -> Area:
-    """A horizontal rectangle of the plan with that number of points along and across the room, without those that are
-    not free up to the clearance above them."""
+    """A horizontal rectangle of the plan with that number of points along and across the room, without the points that
+    are not free up to the clearance above them."""
     a0, b0, a1, b1 = rectangle
     patch = Patch(
         room.world([(a0, b0)], height)[0],
@@ -372,7 +375,7 @@ def fine(
 
 
 def _filled(area: Area, keeps: Sequence[NDArray[np.bool_]]) -> Area:
-    """The area with other points kept; without any it is refused."""
+    """The area with other points; an area without points is an error."""
     if not any(k.any() for k in keeps):
         raise NoPoints(f"the area {area.name!r} has no point that lies free in the room")
     patches = [replace(p, keep=k) for p, k in zip(area.patches, keeps)]

@@ -4,13 +4,13 @@ all requirements.
 1. Find the pattern of the photo's lamps (motif.py), and make candidates: each product, with the pattern scaled, turned
    and shifted. Lamps that do not fit on the ceiling, or lie in a keep-out rectangle, are left out.
 2. Measure coefficients once (coefficients.py). With them, find the dimmers of each candidate that meet the
-   requirements. Candidates come in the order of the distance that they have for any dimmers, so the search ends when
-   none that is left can be closer. Candidates that are too dark at full power are left out before.
-3. Improve scale and offset of the closest ones by small steps.
+   requirements. Candidates are tried in the order of a lower bound of their distance, which holds for any dimmers; the
+   search ends when no remaining candidate can be closer. Candidates that are too dark at full power are left out first.
+3. Improve scale and offset of the closest candidates by small steps.
 4. Solve for the dimmers of the closest candidate anew with its own paths, and check it with others (solve.py). If it
    does not pass, the next one is tried.
 
-Nothing in it is random beyond the paths, whose seeds are fixed: equal input gives an equal design.
+Only the paths are random, and their seeds are fixed: equal input gives an equal design.
 """
 
 from __future__ import annotations
@@ -50,11 +50,12 @@ MARGIN, GLARE_MARGIN = 0.01, 0.4
 #: First step of the scale as a factor, and of the offset in shares of the lattice; each round halves them.
 #: [convention]
 SCALE_STEP, OFFSET_STEP, ROUNDS = 1.1, 0.125, 3
-#: A step must lower the total distance by this, which is about the error of the coefficients. [convention]
+#: Smallest decrease of the total distance by a step, about the error of the coefficients. [convention]
 MIN_GAIN = 0.003
-#: Candidates that miss the requirements by least, which are asked what relaxing would give. [convention]
+#: Number of candidates that miss the requirements by the least and for which relaxed requirements are tried.
+#: [convention]
 EXPLAINED = 3
-#: A requirement costs something of the look if without it the total distance falls by more. [convention]
+#: A requirement changes the look if the total distance without it is smaller by more than this. [convention]
 PRICE = 0.002
 #: Points of each area that measure the responses of the final dimmers, paths for each point that measure the surfaces.
 #: [convention]
@@ -72,7 +73,7 @@ class Offer:
 
 @dataclass(frozen=True)
 class Search:
-    """What the pattern may become."""
+    """The allowed changes of the pattern."""
 
     scales: tuple[float, ...] = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.12, 1.25, 1.4, 1.6, 1.8, 2.0)
     """Factors of its size that are tried first."""
@@ -102,12 +103,12 @@ class Candidate:
     pattern: float
     """Change of the statistics of the pattern."""
     bound: float
-    """Distance of the look that it has for any dimmers."""
+    """Distance of the look that no dimmers can reduce."""
 
 
 @dataclass(frozen=True)
 class Arrangement:
-    """A design with its places, or the explanation why there is none."""
+    """A design with its places, or the explanation why no design was found."""
 
     project: Project
     """The project with the luminaires of the design."""
@@ -124,9 +125,10 @@ class Arrangement:
     met: int
     """Number of them that meet the requirements by the coefficients."""
     prices: tuple[tuple[Requirement, float], ...] = ()
-    """Requirements that keep the design from the look: by how much the total distance would fall without each."""
+    """Requirements that keep the design from the look: the decrease of the total distance without each of them."""
     relaxations: tuple[Relaxation, ...] = ()
-    """If not feasible: what each requirement alone would have to become with the patterns that come closest."""
+    """If not feasible: the limit to which each requirement alone would have to be relaxed, with the patterns that come
+    closest."""
 
     @property
     def feasible(self) -> bool:
@@ -148,7 +150,7 @@ class Arrangement:
 
 @dataclass(frozen=True)
 class _Task:
-    """What all candidates share."""
+    """The data that all candidates share."""
 
     project: Project
     offers: Sequence[Offer]
@@ -201,7 +203,8 @@ def arrange(
 def _candidates(
     project: Project, offers: Sequence[Offer], search: Search, found: Motif
 ) -> tuple[list[Candidate], list[Kind], list[float]]:
-    """All patterns, those first that can be closest to the look; the kinds of luminaires, and their colours."""
+    """All patterns, in the order of the closeness to the look that they can reach; the kinds of luminaires, and their
+    colours."""
     room, context = project.room, project.room.scene.context
     photo = _mean_colour(project.luminaires)
     kinds, colours = [], []
@@ -229,7 +232,7 @@ def _candidate(
     offset: tuple[float, float],
     colour: float,
 ) -> Candidate | None:
-    """A pattern of a product; None if no lamp fits, or too many do."""
+    """A pattern of a product; None if no lamp fits, or if too many lamps fit."""
     room, ceiling = project.room, project.room.length * project.room.width
     lamps = found.placed(room, scale, turn, offset)
     lamps = replace(lamps, sizes=np.tile(one.sides, (len(lamps.places), 1)))
@@ -281,8 +284,8 @@ def _best(task: _Task, candidates: Sequence[Candidate]) -> Arrangement:
 
 
 def _darkness(task: _Task, candidate: Candidate, margins: dict[Requirement, float]) -> float:
-    """By which share a candidate misses a mean illuminance although all its lamps are at their highest dimmers; 0 if it
-    reaches all of them. This excludes most patterns of too few lamps without solving for their dimmers."""
+    """The share by which a candidate misses a mean illuminance with all lamps at their highest dimmers; 0 if it reaches
+    all means. This excludes most patterns of too few lamps without solving for their dimmers."""
     model = task.table.model(candidate.offer, candidate.lamps)
     full = np.full(len(candidate.lamps.places), task.wishes.max_dimmer)
     wanted = [(r.at_least * (1 + m), r) for r, m in margins.items() if r.quantity == "mean" and r.is_minimum]
@@ -344,7 +347,8 @@ def _likeness(
 def _refined(
     task: _Task, start: tuple[float, Candidate], margins: dict[Requirement, float]
 ) -> tuple[float, Candidate]:
-    """A candidate near another that is at least as close, by steps of scale and offset that are halved."""
+    """A candidate that is at least as close as the given one, found near it by steps of scale and offset that are
+    halved."""
     best, now = start
     for turn in range(ROUNDS):
         factor, step = SCALE_STEP ** (0.5**turn), OFFSET_STEP * 0.5**turn
@@ -401,7 +405,8 @@ def _result(task: _Task, candidate: Candidate, solution: Solution, tried: int, m
 def _failed(
     task: _Task, missed: Sequence[tuple[float, Candidate]], margins: dict[Requirement, float], tried: int
 ) -> Arrangement:
-    """The candidate that misses the requirements by the least share, and what relaxing each alone would give."""
+    """The candidate that misses the requirements by the least share, and the result of relaxing each requirement
+    alone."""
     best: dict[Requirement, Relaxation] = {}
     for _, candidate in missed[:EXPLAINED]:
         model = task.table.model(candidate.offer, candidate.lamps)
@@ -420,8 +425,7 @@ def _failed(
 def _prices(
     task: _Task, candidate: Candidate, margins: dict[Requirement, float]
 ) -> list[tuple[Requirement, float]]:
-    """By how much the total distance of a candidate falls without each requirement, by the coefficients; the largest
-    first."""
+    """The decrease of a candidate's total distance without each requirement, by the coefficients; the largest first."""
     whole, _ = _rated(task, candidate, margins)
     out = []
     for r in margins:
@@ -432,7 +436,7 @@ def _prices(
 
 
 def _surfaces(project: Project) -> list[Area]:
-    """Floor, walls and ceiling of a room, with few points; those without points are left out."""
+    """Floor, walls and ceiling of a room, with few points; surfaces without points are left out."""
     out = []
     for make in (made.background, made.walls, made.ceiling):
         try:

@@ -1,9 +1,9 @@
 """Checks requirements in a lit scene: each with its value, interval, and the confidence that it is met.
 
-A requirement passes if that confidence reaches the wanted one, fails if the confidence that it is not met does, and is
-undecided otherwise. Undecided ones are computed anew with four times the paths, with another seed, up to a limit.
-Each of the looks spends an equal share of the allowed error, so that stopping at a good one does not make it too
-optimistic.
+A requirement passes if that confidence reaches the wanted one, fails if the confidence that it is not met reaches it,
+and is undecided otherwise. Undecided requirements are computed anew with four times the paths, with another seed, up to
+a limit. Each look spends an equal share of the allowed error, so that stopping at a favourable look does not bias the
+result.
 """
 
 from __future__ import annotations
@@ -39,10 +39,11 @@ UNRATED = 1e-3
 
 @dataclass(frozen=True)
 class Settings:
-    """What a check computes with."""
+    """Settings of a check."""
 
     maintenance: float
-    """Maintenance factor in (0, 1]: maintained over initial illuminance. There is no default, because it decides."""
+    """Maintenance factor in (0, 1]: maintained over initial illuminance. There is no default, because the results
+    depend on it."""
     confidence: float = 0.975
     """Confidence at which a requirement passes or fails."""
     samples: int = 256
@@ -73,7 +74,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Finding:
-    """A requirement and what was found."""
+    """A requirement and its result."""
 
     requirement: Requirement
     value: float
@@ -89,7 +90,7 @@ class Finding:
     samples: int = 0
     """Paths for each point of the look that decided; 0 for exact numbers."""
     note: str = ""
-    """What to know about the number."""
+    """A note about the number."""
 
     @property
     def reserve(self) -> float:
@@ -99,7 +100,7 @@ class Finding:
         return sign * gap / self.requirement.limit
 
     def missed_by(self, before: str) -> str:
-        """The share of the limit by which it is missed, after some words; nothing if no number says so."""
+        """The share of the limit by which it is missed, after the given words; empty if no number states this share."""
         return f"{before}{abs(self.reserve) * 100:.1f} %" if math.isfinite(self.reserve) else ""
 
     def __str__(self) -> str:
@@ -123,7 +124,7 @@ class Checked:
     """Glare of each group of observers that a requirement asks for."""
     settings: Settings
     notes: tuple[str, ...] = of(default=())
-    """What was not checked of these areas, such as a wall without points."""
+    """Parts of these areas that were not checked, such as a wall without points."""
 
     @property
     def passes(self) -> bool:
@@ -207,7 +208,7 @@ def _known(requirements: Sequence[Requirement], quantities: Sequence[str], names
 
 @dataclass(frozen=True)
 class _Found:
-    """What was measured, and by how many paths for each point."""
+    """The measured fields, and the number of paths for each point."""
 
     fields: Mapping[str, Field]
     flat: Mapping[str, Field]
@@ -312,10 +313,10 @@ def _uniform(r: Requirement, field: Field, level: float, samples: int) -> Findin
 
 
 def _glare(r: Requirement, found: Sequence[Rating], level: float, samples: int) -> Finding:
-    """The finding of the worst observer. All must pass, and one that fails by chance is likelier among many: so the
-    error of the worst counts once for each of them."""
+    """The finding of the worst observer. All observers must pass, and the probability that one of them fails by chance
+    grows with their number: so the error of the worst observer counts once for each of them."""
     rating = worst(found)
-    # Each end of the interval is that of the observer where it lies highest.
+    # Each end of the interval is the largest among the observers.
     low = max(x.interval(1 - 2 * (1 - level) / len(found))[0] for x in found)
     high = max(x.interval(2 * level - 1)[1] for x in found)
     met = float(np.min([x.probability_at_most(r.limit) for x in found]))  # unlike min, NaN if any is

@@ -2,9 +2,9 @@
 them.
 
 One scene holds each product in each direction at each place of the grid, and one set of paths for each point measures
-its light from all of them. Every pattern of luminaires is then a sum, and thousands can be compared without tracing
-anything anew. Interpolation makes single points a few per cent uncertain, so a pattern that is chosen by these numbers
-must be checked by its own paths (arrange.py does).
+the light from all of these luminaires. Every pattern of luminaires is then a sum, and thousands can be compared without
+tracing anything anew. Interpolation makes single points a few per cent uncertain, so a pattern that is chosen by these
+numbers must be checked by its own paths (arrange.py does).
 
 The glare of an observer has no smooth coefficients: its direct part follows from the intensities towards the eye in
 closed form, for an opening that is small beside its distance and that nothing hides.
@@ -48,7 +48,7 @@ INDIRECT = 0.02
 
 @dataclass(frozen=True)
 class Kind:
-    """A product as a pattern uses it."""
+    """A product in the form that patterns use."""
 
     product: Product
     colour: tuple[float, float, float]
@@ -157,7 +157,7 @@ class Coefficients:
     maintenance: float
 
     def model(self, number: int, lamps: Placed) -> Model:
-        """What requirements are evaluated with, for a pattern of one kind of luminaire."""
+        """The responses with which requirements are evaluated, for a pattern of one kind of luminaire."""
         one = self.kinds[number]
         keys = [one.key(float(a)) for a in lamps.angles]
         mix = np.stack([self.grids[number, k].weights(p, self.count) for k, p in zip(keys, lamps.places)], axis=1)

@@ -27,7 +27,7 @@ DIMMABLE = ("mean", "uniformity", "minimum", "glare", "density", "flux")
 
 @dataclass(frozen=True)
 class Model:
-    """What requirements are evaluated with. Dimmers are those of the luminaires, from 0 to 1."""
+    """The responses with which requirements are evaluated. Dimmers are those of the luminaires, from 0 to 1."""
 
     luminaires: Sequence[Luminaire]
     responses: Mapping[str, Response]

@@ -205,7 +205,7 @@ def _seconds(second: Sequence[Second]) -> list[Block]:
 
 
 def _state_basis(here: Project, state: LightScene) -> str:
-    """What the light of a scene is computed from."""
+    """The part of the light from which a light scene is computed."""
     light = "only the light straight from the luminaires counts, without reflections" if state.direct else ""
     factor = f"maintenance factor {here.chosen.maintenance:g}"
     text = "; ".join(part for part in (light, factor) if part)
@@ -369,7 +369,7 @@ def _luminaires(project: Project) -> list[Block]:
 
 
 def _key(lamp: Luminaire) -> str:
-    """What luminaires of one product have in common."""
+    """Properties that the luminaires of one product share."""
     return f"{lamp.product.name}\0{lamp.product.hash}\0{lamp.product.flux}"
 
 

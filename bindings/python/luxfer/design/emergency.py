@@ -66,7 +66,7 @@ def escape_route(room: Room, name: str, rectangle: Sequence[float], unit: str = 
 
 
 def open_area(room: Room, name: str = "open area", border: float = BORDER) -> Area:
-    """The floor without a strip along the walls, and where people can walk."""
+    """The part of the floor where people can walk, without a strip along the walls."""
     a, b = (border if side > 3 * border else 0.0 for side in (room.length, room.width))
     rectangle = (a, b, room.length - a, room.width - b)
     steps = (math.ceil((room.length - 2 * a) / OPEN_STEP), math.ceil((room.width - 2 * b) / OPEN_STEP))

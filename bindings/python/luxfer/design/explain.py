@@ -1,4 +1,4 @@
-"""Explains wishes that cannot be met together: what each requirement alone would have to become."""
+"""Explains wishes that cannot be met together: the limit to which each requirement alone would have to be relaxed."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from .constraints import Model
     from .standard import Requirement
 
-#: A requirement binds if relaxing it lets the others hold; violations below this share count as none. [rounding]
+#: A requirement binds if relaxing it lets the others hold; violations below this share count as zero. [rounding]
 NONE = 1e-4
 
 
 @dataclass(frozen=True)
 class Relaxation:
-    """A requirement whose relaxation alone makes the others possible."""
+    """A requirement: if it alone is relaxed, the others can be met."""
 
     requirement: Requirement
     attainable: float
@@ -41,8 +41,8 @@ def relaxations(
     hard: Limits,
     start: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], list[Relaxation]]:
-    """The dimmers that miss all requirements by the least equal share, and for each requirement what it would have to
-    become if only it were relaxed; requirements whose relaxation alone does not help are left out."""
+    """The dimmers that miss all requirements by the least equal share, and for each requirement the limit to which it
+    would have to be relaxed if only it were relaxed; requirements whose relaxation alone does not help are left out."""
     parts = [of_groups(model.limits(r), groups) for r in requirements]
     _, closest = min_violation(joined(parts), hard, start)
     out = []

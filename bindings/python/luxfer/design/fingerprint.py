@@ -1,4 +1,4 @@
-"""What a design is made of, as one record and one hash: with equal ones it can be made again to the bit."""
+"""The inputs of a design as one record and one hash: equal records give equal designs, to the bit."""
 
 from __future__ import annotations
 
@@ -39,7 +39,8 @@ def record(
     scenes: Sequence[LightScene] = (),
     standby: Standby | None = None,
 ) -> dict[str, Any]:
-    """Everything that the numbers of a report depend on; the scene, the photometry and the grids by their SHA-256."""
+    """All inputs on which the numbers of a report depend; the scene, the photometry and the grids are given by their
+    SHA-256."""
     return {
         "form": FORM,
         "luxfer": version(),
@@ -69,7 +70,7 @@ def record(
 
 
 def _state(scene: LightScene, luminaires: Sequence[Luminaire]) -> dict[str, Any]:
-    """What the numbers of a light scene depend on."""
+    """The inputs on which the numbers of a light scene depend."""
     dimmers = [lamp.dimmer for lamp in scene.lamps(luminaires)]
     rest = {f.name: getattr(scene, f.name) for f in fields(scene) if f.name != "dimmers"}
     kept = {"requirements": [asdict(r) for r in scene.requirements], "hours": scene.hours and asdict(scene.hours)}

@@ -37,7 +37,7 @@ BELOW = 0.005
 
 @dataclass(frozen=True)
 class Building:
-    """What was read of a space."""
+    """The data read from a space."""
 
     room: Room
     """The space, with its furniture."""
@@ -50,7 +50,7 @@ class Building:
     illuminance: float
     """Required illuminance of the space in lux; 0 if the file states none."""
     notes: tuple[str, ...]
-    """What was left out, or assumed."""
+    """Notes on data that were left out or assumed."""
 
 
 def load(
@@ -59,8 +59,8 @@ def load(
     space: str | None = None,
     reflectances: Sequence[float] = REFLECTANCES,
 ) -> Building:
-    """Reads a space of a file by its name, long name or identifier; a file with one space needs none. `reflectances`
-    are those of the ceiling, the walls, the floor and the furniture."""
+    """Reads a space of a file by its name, long name or identifier; a file with one space needs no name. `reflectances`
+    are given for the ceiling, the walls, the floor and the furniture."""
     if len(reflectances) != 4 or not all(0 <= r <= 1 for r in reflectances):
         raise ValueError("reflectances are four numbers in [0, 1]: of ceiling, walls, floor and furniture")
     model = _Model(Path(path))

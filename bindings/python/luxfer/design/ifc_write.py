@@ -29,7 +29,7 @@ ZONE_HEIGHT, BODY_HEIGHT = 0.01, 0.05
 FOLDER = "photometry"
 #: Name space of the identifiers, which follow from the names of the parts.
 SPACE = uuid.UUID("6f1d9c52-3a77-4c0e-9a4b-0d1f5a1c7e21")
-#: Property sets of what only this package knows of a fixture, and of its type.
+#: Names of the property sets that only this package defines, for a fixture and for its type.
 OWN, OWN_TYPE = "Luxfer_Luminaire", "Luxfer_LightFixture"
 #: Types of values of results by their units.
 VALUES = {"lx": "IfcIlluminanceMeasure", "lm": "IfcLuminousFluxMeasure"}
@@ -359,5 +359,5 @@ class _Writer:
 
 
 def _key(product: Product) -> str:
-    """What luminaires of one product have in common."""
+    """Properties that the luminaires of one product share."""
     return f"{product.name}/{product.hash}/{product.flux:g}"

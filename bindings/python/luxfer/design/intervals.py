@@ -84,7 +84,7 @@ def quantile(probability: float, freedom: float) -> float:
 
 
 def bisect(holds: Callable[[float], bool], low: float, high: float) -> float:
-    """Where a condition begins to hold, between low, where it does not, and high."""
+    """The point where a condition begins to hold, between low, where it does not hold, and high, where it does."""
     for _ in range(BISECTIONS):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if holds(middle) else (middle, high)
@@ -92,7 +92,7 @@ def bisect(holds: Callable[[float], bool], low: float, high: float) -> float:
 
 
 def mean_of(values: ArrayLike, errors: ArrayLike, weights: ArrayLike | None = None) -> Estimate:
-    """The mean of independent estimates, which count by their weights if there are some.
+    """The mean of independent estimates, weighted by the given weights, or equally without weights.
 
     >>> e = mean_of([100, 102, 98, 104], [2, 2, 2, 2])
     >>> e.value, e.error, e.freedom
@@ -107,7 +107,7 @@ def mean_of(values: ArrayLike, errors: ArrayLike, weights: ArrayLike | None = No
 
 
 def _shares(count: int, weights: ArrayLike | None) -> NDArray[np.float64]:
-    """The weights with the sum 1; equal ones without any."""
+    """The weights scaled to the sum 1; without weights, equal weights."""
     raw = np.ones(count) if weights is None else np.asarray(weights, float)
     return raw / raw.sum()
 
@@ -118,8 +118,8 @@ class Uniformity:
 
     The smallest of noisy values is too small on average, so no interval is centred on it. Instead each point is
     compared with U0 times the mean. U0 is at least a limit if every point passes: the confidence is that of the worst
-    point (intersection-union test). It is below the limit if any point fails, and the more points there are, the
-    likelier one does by chance: the error of the worst point counts once for each of them (Bonferroni).
+    point (intersection-union test). U0 is below the limit if any point fails. With more points, it is likelier that one
+    of them fails by chance, so the error of the worst point counts once for each point (Bonferroni).
     """
 
     values: NDArray[np.float64]
@@ -127,7 +127,7 @@ class Uniformity:
     errors: NDArray[np.float64]
     """Their standard errors."""
     weights: NDArray[np.float64] | None = None
-    """How much each point counts in the mean; all alike without weights."""
+    """Weight of each point in the mean; without weights, all points count equally."""
 
     @property
     def mean(self) -> float:
@@ -169,8 +169,8 @@ class Extremes:
     """The smallest illuminance of independent points, and the largest over the smallest one (diversity).
 
     As with the uniformity, no interval is centred on them. The smallest is at least a limit if every point is; the
-    diversity is at most a limit if every pair of points keeps to it. Each fails if any point or pair fails, whose error
-    counts once for each of them.
+    diversity is at most a limit if every pair of points keeps to it. A limit fails if any point or pair fails, so the
+    error of the worst point or pair counts once for each of them.
     """
 
     values: NDArray[np.float64]
@@ -234,8 +234,8 @@ def _z(gaps: NDArray[np.float64], spreads: NDArray[np.float64]) -> NDArray[np.fl
 
 
 def _front(values: NDArray[np.float64], errors: NDArray[np.float64]) -> NDArray[np.intp]:
-    """The points of which one has the smallest gap in standard errors to any limit: those with a larger or a smaller
-    error than all points of smaller value. All points if any is not known."""
+    """The points of which one has the smallest gap in standard errors to any limit: the points whose error is larger or
+    smaller than that of all points of smaller value. All points if a value or an error is not known."""
     if np.isnan(values).any() or np.isnan(errors).any():
         return np.arange(len(values))
     order = np.lexsort((errors, values))
@@ -246,8 +246,8 @@ def _front(values: NDArray[np.float64], errors: NDArray[np.float64]) -> NDArray[
 
 
 def _all_of(gaps: NDArray[np.float64], count: int) -> tuple[float, float]:
-    """Confidence that all gaps, in standard errors, are at least 0 (intersection-union test), and that one of that
-    number is not (Bonferroni)."""
+    """Confidence that all gaps, in standard errors, are at least 0 (intersection-union test), and confidence that one
+    of that number of gaps is below 0 (Bonferroni)."""
     if np.isnan(gaps).any():
         return math.nan, math.nan
     met = student(float(gaps.min()), POINT_FREEDOM)

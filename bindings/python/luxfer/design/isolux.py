@@ -31,8 +31,8 @@ def levels(low: float, high: float, most: int = 6) -> list[float]:
 
 
 def lines(grid: NDArray[np.float64], level: float) -> list[tuple[Point, Point]]:
-    """Segments where the values of a grid (rows, columns) cross a level, as (column, row) of the points; squares with
-    a point that is NaN have none.
+    """Segments where the values of a grid (rows, columns) cross a level, as (column, row) of the points; squares with a
+    point that is NaN have no segments.
 
     >>> lines(np.array([[0.0, 2.0], [0.0, 2.0]]), 1)
     [((0.5, 0.0), (0.5, 1.0))]

@@ -1,7 +1,7 @@
-"""How much a design with lamps at other places still looks like the photo.
+"""Measures how far the look of a design with lamps at other places is from the photo.
 
-The lamps of the photo as they fill the ceiling are the copy. The design is compared with it by parts, each of which is
-0 for the copy itself:
+The copy is the ceiling with the lamps of the photo. The design is compared with the copy by parts, each of which is 0
+for the copy itself:
 
 - `pattern`: root mean square difference of five statistics of the pattern. Four are natural logarithms, so that 0.1 is
   a change by a tenth: luminous share of the ceiling; size of the lamps over their spacing; length over width of the
@@ -103,7 +103,7 @@ def moved(scale: float, turn: float, offset: tuple[float, float], colour: float)
 
 
 def statistics(lamps: Placed, ceiling: float) -> NDArray[np.float64]:
-    """The five statistics of a pattern on a ceiling of that area; NaN where there are too few lamps for one."""
+    """The five statistics of a pattern on a ceiling of that area; NaN for a statistic that needs more lamps."""
     count = len(lamps.places)
     lengths, widths = np.maximum(lamps.sizes, 1e-3).T  # a point is as large as a millimetre
     area = (lengths * widths).sum()
@@ -139,7 +139,7 @@ def _rows(offsets: NDArray[np.float64], distance: NDArray[np.float64]) -> float:
 
 
 def pattern_distance(photo: NDArray[np.float64], now: NDArray[np.float64]) -> float:
-    """Root mean square difference of statistics; those that one pattern does not have are left out."""
+    """Root mean square difference of the statistics that both patterns have."""
     gap = (photo - now)[~np.isnan(photo - now)]
     return float(np.sqrt((gap**2).mean()))
 

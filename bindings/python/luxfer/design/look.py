@@ -1,5 +1,5 @@
-"""The distance of a design's look from the photo's: how the brightness is shared among the lamps, and how bright all
-is.
+"""The distance of a design's look from the photo's: the brightness ratios of the lamps, and the brightness of all lamps
+together.
 
 The lamps keep the photo's places and colours, so their look changes by their dimmers alone:
 
@@ -28,12 +28,12 @@ DARKEST = 1e-3
 
 @dataclass(frozen=True)
 class Distance:
-    """How far a look is from the photo's."""
+    """Distance of a look from the photo's."""
 
     pattern: float
-    """Relative change of the brightness ratios of the lamps; 0: none."""
+    """Relative change of the brightness ratios of the lamps; 0: no change."""
     exposure: float
-    """Change of the brightness of all lamps together, in stops; 0: none."""
+    """Change of the brightness of all lamps together, in stops; 0: no change."""
 
     def __str__(self) -> str:
         ratios = f"brightness ratios of the lamps changed by {100 * self.pattern:.1f} %"
@@ -84,7 +84,7 @@ def objective(photo: NDArray, flux: NDArray, surfaces: NDArray | None = None) ->
 
 
 def _at_least(photo: Sequence[float] | NDArray) -> NDArray[np.float64]:
-    """The photo's dimmers, where those that are off count as nearly off."""
+    """The photo's dimmers; lamps that are off count as nearly off."""
     values = np.asarray(photo, float)
     brightest = values.max(initial=0.0)
     if brightest <= 0:

@@ -33,7 +33,7 @@ class Product:
     name: str
     """Name as the list of luminaires prints it."""
     photometry: bytes
-    """Bytes of its IES, EULUMDAT or TM-33 file; those of a GLDF file are a EULUMDAT file of its variant."""
+    """Bytes of its IES, EULUMDAT or TM-33 file; for a GLDF file, the bytes of a EULUMDAT file of its variant."""
     format: str
     """ "ies", "ldt" or "tm33"."""
     flux: float
@@ -45,7 +45,8 @@ class Product:
     size: tuple[float, float, float] = (0, 0, 0)
     """Luminous opening in metres, as in DistributionReport."""
     reference: str = ""
-    """Where the product is described, such as its GLDF file or catalogue number; schedules and reports print it."""
+    """Source of the product's description, such as its GLDF file or catalogue number; schedules and reports print
+    it."""
 
     @classmethod
     def load(
@@ -56,8 +57,8 @@ class Product:
         watts: float = 0,
         rendering: float = 0,
     ) -> Product:
-        """A product from its .ies, .ldt, .xml (TM-33) or .gldf file; watts and rendering of 0 are those of the file.
-        The name of a variant may follow that of a .gldf file, as in lamp.gldf#black."""
+        """A product from its .ies, .ldt, .xml (TM-33) or .gldf file; if watts or rendering is 0, the value of the file
+        is used. The name of a variant may follow that of a .gldf file, as in lamp.gldf#black."""
         file = luminaire_path(path)
         kind = file.suffix.lower().lstrip(".")
         if f".{kind}" not in LUMINAIRES:
@@ -172,8 +173,8 @@ def dimmed(luminaires: Sequence[Luminaire], dimmers: Sequence[float]) -> list[Lu
 
 
 def lit_scene(scene: Scene, luminaires: Sequence[Luminaire], shape: str = "faces") -> Scene:
-    """A copy of a scene with these luminaires; those that are off are left out. With the shape "point" they have no
-    body."""
+    """A copy of a scene with these luminaires; luminaires that are off are left out. With the shape "point" they have
+    no body."""
     context = scene.context
     copy = Scene.from_bytes(context, scene.to_bytes(), keep_origin=1)
     loaded: dict[bytes, Distribution] = {}
@@ -216,8 +217,8 @@ def from_transfer(
     """The lamps of a photo's lighting as luminaires: each at its place, with its flux and colour.
 
     Without a product each lamp becomes a flat diffuse panel of its size, of that efficacy in lm/W (0: power unknown)
-    and colour rendering index. With one, each becomes that product, whose full flux must suffice: its dimmer is the
-    photo's flux over the product's."""
+    and colour rendering index. With a product, each lamp becomes this product, whose full flux must suffice: the dimmer
+    is the photo's flux over the product's."""
     out = []
     for fixture in transfer.fixtures:
         if fixture.flux <= 0:

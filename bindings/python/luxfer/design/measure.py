@@ -1,5 +1,4 @@
-"""Measures what requirements ask for in a lit scene, and nothing else: illuminance of areas, and glare of
-observers."""
+"""Measures only the quantities that requirements limit in a lit scene: illuminance of areas, and glare of observers."""
 
 from __future__ import annotations
 
@@ -34,7 +33,8 @@ class Field:
     errors: NDArray[np.float64]
     """Standard errors."""
     bias: float = 0
-    """Largest relative error that the standard errors leave out: of the planes of cylindrical illuminance."""
+    """Largest relative error that the standard errors leave out, due to the finite number of planes of cylindrical
+    illuminance."""
 
     @property
     def mean(self) -> Estimate:

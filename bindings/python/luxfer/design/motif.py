@@ -2,7 +2,7 @@
 
 Lamps in rows repeat along two vectors, the lattice; the lamps of one cell are the motif. Where the lamps repeat along
 one vector only, or along none, the pattern as it fills the ceiling repeats as a whole. Lamps that the border of the
-ceiling cuts do not count, unless there are no others.
+ceiling cuts count only if there are no others.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ BORDER = 0.05
 WHOLE = 0.9
 #: Two places are one if they differ by at most this share of the spacing. [convention]
 SAME = 0.15
-#: Share of the lamps that must have a neighbour at a vector of the lattice, of those whose neighbour would lie in the
-#: room. [convention]
+#: A vector belongs to the lattice if at least this share of the lamps have a neighbour at it. Only lamps count whose
+#: neighbour would lie in the room. [convention]
 REPEATS = 0.75
 #: Smallest sine of the angle between the vectors of a lattice. [convention]
 OPEN_ANGLE = 0.5
@@ -149,7 +149,7 @@ def extents(angles: NDArray[np.float64], sizes: NDArray[np.float64]) -> NDArray[
 
 
 def whole(room: Room, lamps: Placed) -> Placed:
-    """The lamps that the border of the ceiling does not cut; all if it cuts all."""
+    """The lamps that the border of the ceiling does not cut; all lamps if it cuts all."""
     reach = extents(lamps.angles, lamps.sizes)
     far = lamps.places + reach > np.array([room.length, room.width]) - BORDER
     at_border = (far | (lamps.places - reach < BORDER)).any(axis=1)

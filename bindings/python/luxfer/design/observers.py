@@ -67,7 +67,7 @@ def at(
 
 
 def _seen(room: Room, name: str, seats: Sequence, views: Sequence, eye: float) -> Observers:
-    """Those of the observers whose eyes are free, in the room."""
+    """The observers whose eyes are free and in the room."""
     positions = room.world(seats, eye)
     plan = np.asarray(seats, float)
     inside = (plan > 0).all(axis=1) & (plan < (room.length, room.width)).all(axis=1)

@@ -52,7 +52,7 @@ def document(title: str, blocks: Sequence[Block], footer: str) -> bytes:
 
 
 def _fonts() -> None:
-    """The fonts that come with reportlab, which have the signs of the report."""
+    """The fonts that come with reportlab, which contain the characters of the report."""
     from reportlab.pdfbase import pdfmetrics
     from reportlab.pdfbase.ttfonts import TTFont
 

@@ -47,7 +47,7 @@ def views(
 
 
 def _toned(pixels: np.ndarray) -> np.ndarray:
-    """Compresses what is brighter than white smoothly, the colours kept."""
+    """Smoothly compresses values brighter than white, and keeps the colours."""
     peak = pixels.max(axis=2, keepdims=True)
     knee = 0.6
     over = np.maximum(peak - knee, 0)

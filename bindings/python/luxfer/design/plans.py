@@ -71,7 +71,7 @@ def plan(
             drawing.line(corners, colour, 1.0 if area.kind == "task" else 0.7, area.kind != "task")
             if area.kind == "escape line":  # its band stands around it
                 continue
-            # The name stands below the upper edge, except of the background, where it stands above the lower one.
+            # The name stands below the upper edge, except that the name of the background stands above its lower edge.
             x, y = scale.at((a0, b1)) if low else scale.at((a0, b0))
             # That of an open area stands at the other end, because it may coincide with the background.
             if area.kind == "open area":

@@ -48,7 +48,7 @@ class Project:
     scenes: Sequence[LightScene] = ()
     """Named states of the dimmers."""
     standby: energies.Standby = energies.Standby()
-    """Power beside the light, for the energy of the design."""
+    """Power used besides that of the light, for the energy of the design."""
 
     def requiring(self, *more: Requirement) -> Project:
         """The project with further requirements."""
@@ -94,7 +94,7 @@ class Project:
         return {s.name: self.in_scene(s.name).check() for s in self.scenes if s.requirements}
 
     def energy(self) -> energies.Energy | None:
-        """The energy of a year by the hours of the light scenes; None if none has hours."""
+        """The energy of a year by the hours of the light scenes; None if no light scene has hours."""
         return energies.energy(self.luminaires, self.scenes, self.room.floor_area, self.standby)
 
     def check(self) -> Checked:
@@ -138,7 +138,7 @@ class Project:
         return replace(self, luminaires=solution.luminaires)
 
     def _leni(self) -> float | None:
-        """LENI, if a requirement limits it and light scenes have hours."""
+        """LENI, if a requirement limits it and light scenes have hours of use."""
         used = self.energy() if self._limits_energy else None
         return used.leni if used else None
 
@@ -147,7 +147,7 @@ class Project:
         return any(r.quantity == "energy" for r in self.requirements)
 
     def record(self) -> dict[str, Any]:
-        """Everything that the numbers depend on (see fingerprint)."""
+        """All inputs on which the numbers depend (see fingerprint)."""
         return fingerprint.record(
             self.room.scene,
             self.luminaires,

@@ -2,7 +2,7 @@
 
 `export` writes the room with matte surfaces, the luminaires by their IES files, and the points of all areas.
 `recompute` runs Radiance's ies2rad, oconv and rtrace on the folder, which come with `pip install luxfer[radiance]` or
-with an installed Radiance, and compares: a requirement is confirmed if both programs decide it alike.
+with an installed Radiance, and compares: a requirement is confirmed if both programs reach the same decision.
 
 Not exported: mirror images of glossy surfaces, textures (their mean colour stands for them), light of the surroundings.
 """
@@ -54,10 +54,10 @@ INDEX = "index.json"
 
 @dataclass(frozen=True)
 class Second:
-    """A requirement and what Radiance finds."""
+    """A requirement and the result of Radiance."""
 
     finding: Finding
-    """What luxfer found."""
+    """The finding of luxfer."""
     value: float
     """The number by Radiance."""
 
@@ -112,7 +112,7 @@ def recompute(
     project: Project, checked: Checked, folder: str | os.PathLike[str], settings: Sequence[str] = RTRACE
 ) -> list[Second]:
     """Recomputes the illuminance requirements of a check by Radiance from the files that `export` wrote into the
-    folder; `settings` are those of rtrace."""
+    folder; `settings` are the settings of rtrace."""
     place = Path(folder)
     listed = json.loads((place / INDEX).read_text())
     if listed.get("design") != fingerprint.digest(project.record()):
@@ -282,7 +282,7 @@ def _run(program: str, words: Sequence[str], place: Path, out: Path | None = Non
 
 
 def _program(name: str) -> tuple[Path, Path | None]:
-    """A program of Radiance, with the folder of its library if it is that of the package pyradiance."""
+    """A program of Radiance; if it belongs to the package pyradiance, also the folder of its library."""
     spec = importlib.util.find_spec("pyradiance")
     if spec is not None and spec.origin:
         home = Path(spec.origin).parent

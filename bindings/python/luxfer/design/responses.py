@@ -77,7 +77,8 @@ class GlareResponse:
 
 
 def respond(scene: Scene, luminaires: Sequence[Luminaire], area: Area, paths: int = 1024, seed: int = 1) -> Response:
-    """The response of an area to each luminaire. The scene has none of them yet, and no punctual lights of its own."""
+    """The response of an area to each luminaire. The scene must not contain these luminaires yet, nor other punctual
+    lights."""
     return respond_all(scene, luminaires, [area], paths, seed)[0]
 
 

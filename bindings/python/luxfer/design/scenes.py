@@ -27,15 +27,15 @@ class LightScene:
     """Name as the report prints it."""
     dimmers: Dimmers = None
     """Shares of the full flux: one for each luminaire, or by the name of its group, where "*" stands for all groups
-    that are not named; without "*" these are off. None: the dimmers of the design."""
+    that are not named; without "*" the unnamed groups are off. None: the dimmers of the design."""
     requirements: tuple[Requirement, ...] = ()
-    """What holds in this state."""
+    """Requirements of this state."""
     hours: Hours | None = None
     """Its use in a year, for the energy of the design."""
     direct: bool = False
     """Whether only the light straight from the luminaires counts, as for emergency light."""
     maintenance: float | None = None
-    """Its maintenance factor, if it differs from that of the design, as that of batteries does."""
+    """Its maintenance factor, if it differs from that of the design, as for light from batteries."""
 
     def __post_init__(self) -> None:
         if not self.name:

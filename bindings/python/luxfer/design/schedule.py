@@ -51,8 +51,8 @@ def luminaires(project: Project) -> str:
 
 
 def results(checked: Checked, scenes: Mapping[str, Checked] | None = None) -> str:
-    """One row for each requirement, with limit, value, interval, confidence and outcome; those of the light scenes
-    come after those of the design."""
+    """One row for each requirement, with limit, value, interval, confidence and outcome; the requirements of the light
+    scenes come after those of the design."""
     rows: list[list[object]] = [
         ["light scene", "area", "quantity", "side", "limit", "value", "low", "high", "unit", "confidence", "outcome"]
         + ["reference", "note"]
@@ -68,7 +68,7 @@ def results(checked: Checked, scenes: Mapping[str, Checked] | None = None) -> st
 
 
 def _known(value: float) -> str:
-    """A number; nothing if it is 0, which stands for unknown."""
+    """A number as text; empty if it is 0, which stands for unknown."""
     return f"{value:.6g}" if value else ""
 
 

@@ -1,11 +1,11 @@
 """Finds dimmers of luminaires that stay closest to a photo's look and meet all requirements.
 
-1. Measure once the linear responses of what the requirements ask for.
+1. Measure once the linear responses of the quantities that the requirements limit.
 2. Minimise the distance of the look (look.objective) under the requirements as convex limits. Nothing is traced again.
 3. Check the result with independent paths. A requirement that does not pass with the wanted confidence gets a
    margin, and step 2 is repeated.
 
-If no dimmers meet the requirements, explain.py says which bind and what relaxing each would give.
+If no dimmers meet the requirements, explain.py states which requirements bind, and the result of relaxing each.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ SEED_OFFSET = 100_003
 
 @dataclass(frozen=True)
 class Wishes:
-    """What the dimmers may be."""
+    """The allowed dimmers."""
 
     max_dimmer: float = 1
     """Largest dimmer of a luminaire."""
@@ -54,7 +54,7 @@ class Wishes:
     """Smallest dimmer of a luminaire, also of the least in a group."""
     levels: tuple[float, ...] = ()
     """The dimmers that drivers can set; empty for drivers without steps. The luminaires of a group must then have
-    equal dimmers, because others would get shares of a level."""
+    equal dimmers, because unequal dimmers would be shares of a level."""
     paths: int = 1024
     """Paths for each point that measure the responses."""
     points: int = 0
@@ -64,25 +64,26 @@ class Wishes:
 
 @dataclass(frozen=True)
 class Solution:
-    """A design, or the explanation why there is none."""
+    """A design, or the explanation why no design was found."""
 
     feasible: bool
     """Whether dimmers were found that are known to meet all requirements that dimmers can meet."""
     luminaires: tuple[Luminaire, ...]
-    """The luminaires with their dimmers; if not feasible, those whose worst miss, as a share of its limit, is the
-    smallest that was found."""
+    """The luminaires with their dimmers; if not feasible, the dimmers with the smallest worst violation that was found,
+    as a share of its limit."""
     look: Distance
     """Distance from the photo's look."""
     checked: Checked
     """The requirements checked with independent paths."""
     relaxations: tuple[Relaxation, ...] = ()
-    """If not feasible: what each requirement alone would have to become."""
+    """If not feasible: the limit to which each requirement alone would have to be relaxed."""
     rounds: int = 1
     """Number of solutions until the check passed."""
     wishes: Wishes = Wishes()
 
     unknown: tuple[Finding, ...] = ()
-    """If not feasible: what cannot be decided for any dimmers, such as the power of luminaires that state none."""
+    """If not feasible: the requirements that cannot be decided for any dimmers, such as a limit on the power of
+    luminaires whose power is unknown."""
     contradictory: bool = False
     """If not feasible: whether the other requirements cannot be met together; if not, the dimmers meet them."""
 
@@ -172,7 +173,7 @@ def measured_model(
     settings: Settings,
     wishes: Wishes,
 ) -> Model:
-    """The linear responses of what the requirements ask for."""
+    """The linear responses of the quantities that the requirements limit."""
     if not luminaires:
         raise ValueError("a design without luminaires cannot be solved for")
     wanted = {r.area for r in requirements if r.quantity in OF_AREAS and r.quantity in DIMMABLE}
@@ -248,8 +249,8 @@ def nearest(
     groups: NDArray,
     wishes: Wishes,
 ) -> tuple[NDArray | None, float]:
-    """The dimmers that minimise the aim (see look.objective) within the limits and margins, or None if there are none,
-    and the smallest share by which all limits can be missed together, negative if they can be met."""
+    """The dimmers that minimise the aim (see look.objective) within the limits and margins, or None if no dimmers are
+    within them, and the smallest share by which all limits can be missed together, negative if they can be met."""
     hard, start = start_of(groups, wishes)
     parts = [of_groups(model.limits(r, margin), groups) for r, margin in margins.items()]
     limits, violation = hard, -1.0
@@ -276,7 +277,7 @@ def _in_steps(
     dimmers: NDArray, limits: Limits, hessian: NDArray, gradient: NDArray, groups: NDArray, wishes: Wishes
 ) -> NDArray | None:
     """Dimmers among the drivers' levels: the next level above, then changes of single dimmers as long as the limits
-    hold and the look improves. A heuristic: the best choice of all is not looked for."""
+    hold and the look improves. This is a heuristic; it does not search for the optimum."""
     levels = np.array(sorted(v for v in wishes.levels if wishes.min_dimmer <= v <= wishes.max_dimmer))
     if not len(levels):
         raise ValueError(f"no level of {wishes.levels} is in [{wishes.min_dimmer}, {wishes.max_dimmer}]")
@@ -319,7 +320,8 @@ def _checked(
 
 
 def _more(finding: Finding) -> float:
-    """The margin that a finding lacks: from the near end of its interval to the limit, and a little more."""
+    """The margin that a finding lacks: slightly more than the distance from the near end of its interval to the
+    limit."""
     r = finding.requirement
     near = finding.low if r.is_minimum else finding.high
     lack = (r.limit - near) if r.is_minimum else (near - r.limit)

@@ -1,9 +1,9 @@
 """Requirements of EN 12464-1:2021 for a few well-known places, and requirements of one's own.
 
-The table is short on purpose: it has rows that manufacturers of luminaires quote publicly with equal values, and no
-other. Only the text of the standard is binding: check each row against it before you sign. Rules that hold for all
-places (surrounding and background areas, uniformities, grids) cite the subject of their clause, because the numbers of
-clauses differ between editions.
+The table is short on purpose: it has only rows that manufacturers of luminaires quote publicly with equal values. Only
+the text of the standard is binding: check each row against it before you sign. Rules that hold for all places
+(surrounding and background areas, uniformities, grids) cite the subject of their clause, because the numbers of clauses
+differ between editions.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class Requirement:
     at_most: float | None = None
     """Upper limit."""
     reference: str = "own requirement"
-    """Where the limit comes from, as the report prints it."""
+    """Source of the limit, as the report prints it."""
 
     def __post_init__(self) -> None:
         if self.quantity not in QUANTITIES:
@@ -159,8 +159,8 @@ PLACES = (
 
 def places_from(path: str | os.PathLike[str]) -> tuple[Place, ...]:
     """Rows of a CSV file of your own, for places that this package does not know: its columns have the names of the
-    fields of Place, in any order. `name`, `table`, `illuminance`, `uniformity`, `glare` and `rendering` must be there;
-    the others are 0 or empty if they are not: then nothing is required."""
+    fields of Place, in any order. `name`, `table`, `illuminance`, `uniformity`, `glare` and `rendering` are required.
+    The other columns may be missing; their fields are then 0 or empty, which means that nothing is required."""
     file = Path(path)
     with file.open(newline="", encoding="utf-8-sig") as opened:
         rows = list(csv.DictReader(opened))

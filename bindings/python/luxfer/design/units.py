@@ -23,7 +23,7 @@ def factor(unit: str) -> float:
 
 
 def metres(values: Iterable[float], unit: str) -> tuple[float, ...]:
-    """Lengths of that unit in metres.
+    """Lengths in that unit, converted to metres.
 
     >>> metres((800, 1600), "mm")
     (0.8, 1.6)

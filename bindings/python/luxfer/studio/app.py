@@ -40,7 +40,7 @@ MAX_SESSIONS = 8
 MAX_PROJECT = 16 << 20
 PHOTOS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".bmp", ".gif", ".hdr", ".exr"}
 ROOMS = rooms.GLTF | rooms.USD
-#: What to do about a file of another kind, by the ending of its name.
+#: Advice about a file of another kind, by the ending of its name.
 CONVERSIONS = {
     ending: what
     for endings, what in (
@@ -334,7 +334,7 @@ def bind(port: int) -> socket.socket:
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             listener.bind(("127.0.0.1", candidate))
-            listener.listen(64)  # whoever reads the printed address is answered
+            listener.listen(64)  # from here on, requests to the printed address are answered
             return listener
         except OSError:
             listener.close()

@@ -15,10 +15,12 @@ import numpy as np
 from .project import Invalid
 
 #: A focal length that the corners determine is used within these bounds, as shares of the photo's longer side: a full
-#: angle of view of 120 to 7 degrees. Otherwise the found focal length stays. [convention: lenses of photos of rooms]
+#: angle of view of 120 to 7 degrees. Otherwise the focal length that the library found stays. [convention: lenses of
+#: photos of rooms]
 FOCAL = 0.29, 8.0
-#: Corners are dragged to within this share of the longer side. If that leaves the focal length open by more than the
-#: second number, relatively, the found one stays. [convention: 2 pixels of a picture that is 800 pixels wide on screen]
+#: Corners are dragged to within this share of the longer side. If the focal length then remains uncertain by more than
+#: the second number, relatively, the focal length that the library found stays. [convention: 2 pixels of a picture that
+#: is 800 pixels wide on screen]
 DRAG_ERROR, MAX_SPREAD = 1 / 400, 0.1
 #: Side of the cells of the drawing in pixels, and the bounds of their number along the longer side. In each cell, one
 #: line runs to one of the three points. From more, shorter lines the library finds less exact directions.
@@ -81,7 +83,7 @@ def focal_of(points: np.ndarray[Any, Any], centre: np.ndarray[Any, Any], longer:
 
 def drawing(axes: list[list[float]], focal: float, width: int, height: int) -> np.ndarray[Any, Any]:
     """Returns a grey picture of lines to the vanishing points of three directions in camera space. Its values come from
-    +, -, * and / alone, and square roots, so that a program in C draws the same one."""
+    +, -, * and / alone, and square roots, so that a program in C draws the same picture."""
     cells = min(max(max(width, height) // CELL, MIN_CELLS), MAX_CELLS)
     side = max(width, height) / cells
     columns, rows = max(1, int(width / side + 0.5)), max(1, int(height / side + 0.5))

@@ -90,7 +90,7 @@ class Latest(Generic[T]):
                     return job.wait(timeout=POLL_SECONDS)
                 except luxfer.errors.NotReady:
                     if job.finished:
-                        continue  # meanwhile: the next wait tells how
+                        continue  # it has ended meanwhile: the next wait returns its outcome
                     if seen is not None:
                         seen(job.poll()[0])
         except luxfer.errors.Cancelled:

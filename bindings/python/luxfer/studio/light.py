@@ -1,7 +1,7 @@
 """The steps from the photo to the lit room.
 
-Each step has a key: all inputs that decide its result. A step runs only if its key, or that of a step before it, has
-changed, so that a new camera only renders and a new offset does not segment.
+Each step has a key: all inputs that decide its result. A step runs only if its key, or the key of a step before it, has
+changed. So a new camera causes only a rendering, and a new offset causes no segmentation.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Light:
         self.desks: dict[str, Any] = {}
         self.planned: dict[str, Any] = {}
         self.is_replaced = False  # whether the mask of the lights is not the library's own
-        self.is_dragged = False  # whether the camera of the photo is that of the dragged grid
+        self.is_dragged = False  # whether the camera of the photo comes from the dragged grid
         #: Directions of the room axes and focal length of the dragged grid.
         self.camera_by_grid: tuple[list[list[float]], float] | None = None
         self.lights: luxfer.Image | None = None
@@ -154,7 +154,7 @@ class Light:
             self.send_warnings()
 
     def plane_of(self, project: Project) -> dict[str, Any]:
-        """Replaces the camera by that of the dragged grid, and returns the settings of the stage "unwarp"."""
+        """Replaces the camera by the camera of the dragged grid, and returns the settings of the stage "unwarp"."""
         self.camera_by_grid = None
         if not project["grid"]:
             return {}

@@ -50,7 +50,7 @@ class LiveMasks:
     def __init__(self, photo: luxfer.Image):
         self.context = (
             luxfer.Context()
-        )  # threads of its own: a rendering that has not ended yet does not hold them up
+        )  # threads of its own, which do not wait for a rendering
         self.photo = luxfer.Image(self.context, pictures.reduced(photo, PIXELS).numpy())
         self.size = self.photo.size[:2]
         self.share = self.size[0] / photo.size[0]

@@ -1,7 +1,7 @@
 """The lamps as the user wants them: a factor for each kind, such as 0.5 for half of the light, and added lamps.
 
 An added lamp is [kind, u, v]: a copy of the largest lamp of its kind, at a place in metres on the surface. Both change
-the texture of the lit room and the schedule of its lamps, and thereby everything that is computed from them.
+the texture of the lit room and the schedule of its lamps, and thereby all results that are computed from them.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def factor(mix: dict[str, float], kind: int) -> float:
 
 
 def is_plain(mix: dict[str, float], added: list[list[float]]) -> bool:
-    """Whether nothing is to be changed."""
+    """Whether the mix changes nothing."""
     return not added and all(value == 1 for value in mix.values())
 
 
@@ -111,7 +111,7 @@ def copy_lamp(
     to_texture: np.ndarray[Any, Any],
     place: tuple[float, float],
 ) -> None:
-    """Copies the texels of a lamp to another place; what lies beyond the texture is cut."""
+    """Copies the texels of a lamp to another place; texels beyond the texture are cut off."""
     height, width = labels.shape
     step = to_texture[:, :2] @ (np.array(place) - on_surface(np.array(lamp.position), surface))
     dx, dy = round(step[0] * width), round(step[1] * height)
@@ -187,7 +187,7 @@ def write_schedule(
 
 
 def read_rows(path: Path) -> tuple[list[dict[str, Any]], Callable[[list[dict[str, Any]]], None]]:
-    """Returns the lamps of a schedule, and what writes them again."""
+    """Returns the lamps of a schedule, and a function that writes them again."""
     if path.suffix == ".json":
         whole = json.loads(path.read_text(encoding="utf-8"))
 

@@ -29,7 +29,7 @@ class Opening:
     """A file that opens the studio; it works once."""
 
     def __init__(self, folder: Path, address: str):
-        """`folder` is where the file is written; `address` is the one with the code."""
+        """The file is written into `folder`; `address` contains the code."""
         self.path = folder / f"open-studio-{secrets.token_hex(8)}.html"
         # O_EXCL: fail if somebody else has created a file or a link there.
         with os.fdopen(os.open(self.path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as out:

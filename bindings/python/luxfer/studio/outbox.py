@@ -1,7 +1,7 @@
 """Messages that wait to be sent to one page.
 
 A sleeping page, such as one in a hidden tab, reads no messages. A newer picture, mask or report of progress therefore
-replaces a waiting one of its kind.
+replaces a waiting message of its kind.
 """
 
 from __future__ import annotations

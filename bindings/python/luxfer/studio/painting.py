@@ -1,7 +1,7 @@
 """The stylisation: an artwork of the ball, the picture that is painted like it, and the sheet to paint on.
 
-The page shows the artwork, which is an example, a file of the user or what the user paints on the page. A first
-picture appears by the preset `preview`, then a better one by the preset `fast`.
+The page shows the artwork, which is an example, a file of the user or a painting that the user makes on the page. A
+first picture appears by the preset `preview`, then a better one by the preset `fast`.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ PAPER_WHITE = 0.98
 RATIO_TOLERANCE = 0.03
 EXAMPLES = ("paint", "pen", "stipple")
 OWN = "own"
-#: The generated scenes: the ball, and what is painted like it.
+#: The generated scenes: the ball, and the scene that is painted like it.
 BALL, TARGET = "sphere-on-table", "still-life"
 
 

@@ -33,7 +33,7 @@ DEFAULTS: Project = {
     "lux_plane": {"surface": None, "height": 0.75},  # where the page shows lux: a surface, or a height above the floor
     "white": 100.0,  # luminance of the photo's white, cd/m²
     "camera": None,  # {"position", "target", "fov_y"}; None: the first camera of the room
-    "exposure": None,  # what 1 cd/m² becomes in the picture; None: chosen by its brightness
+    "exposure": None,  # value in the picture of 1 cd/m²; None: chosen by its brightness
     "noise": 0.1,  # error of the picture to plan for
     "plan": None,  # {"render"}: the settings that a plan has chosen for that noise
 }

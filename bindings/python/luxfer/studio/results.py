@@ -111,8 +111,8 @@ def _schedule(path: Path, wanted: Wanted, light: Light) -> None:
 
 
 def _photometry(path: Path, wanted: Wanted, light: Light) -> None:
-    """Writes an IES, LDT, TM-33 and GLDF file of each kind of whole lamp, with the means of its lamps: a flat diffuse
-    opening, which the lamps of the lit room are."""
+    """Writes an IES, LDT, TM-33 and GLDF file of each kind of whole lamp, with the means of its lamps. The opening is
+    flat and diffuse, like the lamps of the lit room."""
     kinds: dict[int, list[luxfer.types.Fixture]] = {}
     for lamp in light.transfer.fixtures:
         if lamp.kind and mix.factor(wanted.project["mix"], lamp.kind) > 0:

@@ -67,7 +67,7 @@ class Guard:
 
     def is_opened(self, scope: Any) -> bool:
         """Whether a request has the code, which then becomes invalid. The request may come from another site, because
-        browsers treat the file that redirects here as one."""
+        browsers treat the file that redirects here as another site."""
         headers = headers_of(scope)
         if not self.code or scope["type"] != "http" or scope["method"] != "GET":
             return False
