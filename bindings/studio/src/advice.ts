@@ -1,4 +1,4 @@
-// What to do about a warning on this page. The library's own advice speaks of settings that only programs have.
+// Advice about warnings in terms of this page. The library's own advice names settings that only programs have.
 
 /** The advice by the code of the warning; codes that are missing here keep the library's advice. */
 const ADVICE: Record<string, string> = {

@@ -14,13 +14,14 @@ export interface Start {
   version: string;
 }
 
-/** Pixels of every picture, so that a project gives the same one in each window. */
+/** Number of pixels of every picture, so that a project gives equal pictures in all windows. */
 export const PICTURE: [number, number] = [720, 480];
 const RECONNECT_MS = 1000;
 
 export class Problem extends Error {}
 
-/** An answer of the server, as JSON unless it is read otherwise; what it says is wrong is a Problem. */
+/** Returns an answer of the server, as JSON unless `read` reads it otherwise; an error that it states is thrown as a
+ * Problem. */
 export async function ask<T>(
   path: string,
   init?: RequestInit,
@@ -45,7 +46,7 @@ async function reason(answer: Response): Promise<string> {
   }
 }
 
-/** Gives the server a file of the user's. */
+/** Sends a file of the user to the server. */
 export function upload(file: File): Promise<FileName & { is_room: boolean }> {
   return ask(`files?name=${encodeURIComponent(file.name)}`, { method: "POST", body: file });
 }
@@ -69,7 +70,7 @@ export interface Edit {
   draft: boolean;
 }
 
-/** The latest state of the page goes to the server; earlier ones that it could not take are left out. */
+/** Sends the latest state of the page to the server; skips earlier states that the server could not take. */
 export class Connection {
   private socket: WebSocket | null = null;
   private waiting: Edit | null = null;
@@ -103,7 +104,7 @@ export class Connection {
     };
   }
 
-  /** Sends a state. Of a stroke that is being painted only one state is on its way at a time. */
+  /** Sends a state. While a stroke is painted, only one of its states is on its way at a time. */
   send(edit: Edit): number {
     if (!this.isUp || !this.socket) return this.version;
     if (edit.draft && this.isDraftUnanswered) {
@@ -117,12 +118,12 @@ export class Connection {
     return this.version;
   }
 
-  /** Another brightness of the picture, which disturbs no work. */
+  /** Sends another brightness of the picture; running work continues. */
   expose(exposure: number): void {
     if (this.isUp) this.socket?.send(JSON.stringify({ type: "expose", exposure }));
   }
 
-  /** A message that is no state of the project. */
+  /** Sends a message other than a state of the project. */
   say(message: Message): void {
     if (this.isUp) this.socket?.send(JSON.stringify(message));
   }

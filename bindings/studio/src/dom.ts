@@ -9,7 +9,7 @@ export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
 
 type Props = Record<string, string | number | boolean | null | ((event: Event) => void)>;
 
-/** Makes an element: attributes, listeners for functions (onclick: ...), and what it contains. */
+/** Makes an element from its attributes, listeners (functions, such as onclick), and children. */
 export function make<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   props: Props = {},
@@ -25,7 +25,7 @@ export function make<K extends keyof HTMLElementTagNameMap>(
   return out;
 }
 
-/** A number with as many digits as a reader wants: 3 significant ones. */
+/** Formats a number with three significant digits. */
 export function short(value: number): string {
   if (!Number.isFinite(value)) return "–";
   const digits = Math.abs(value) >= 100 ? 0 : Math.abs(value) >= 10 ? 1 : 2;
@@ -43,7 +43,7 @@ export function seconds(value: number): string {
   return value < 5400 ? `${Math.round(value / 60)} min` : `${(value / 3600).toFixed(1)} h`;
 }
 
-/** Calls a function at the next frame, once however often it is asked for. */
+/** Calls a function at the next frame, and only once, however often it was requested. */
 export function atNextFrame(work: () => void): () => void {
   let asked = false;
   return () => {
@@ -70,7 +70,7 @@ export function showDialog(title: string, ...inside: (Node | string)[]): HTMLDia
   return out;
 }
 
-/** A line above everything that says what has happened; it stays until it is closed. */
+/** Shows a message above the page, until it is closed. */
 export function notice(text: string, act?: { label: string; work: () => void }): void {
   const button = byId<HTMLButtonElement>("notice-act");
   byId("notice-text").textContent = text;

@@ -9,7 +9,7 @@ export interface View {
   to_photo: number[] | null; // from unwarped pixels to the photo's, row by row
   lens: [number, number, number]; // principal point, and radial distortion per square pixel
   pixel_size: number; // of an unwarped pixel, as a share of the camera's distance from the plane
-  dragged: boolean; // the camera is that of the dragged grid
+  dragged: boolean; // the camera comes from the dragged grid
   distance: number | null; // of the camera from the plane, in metres
 }
 
@@ -70,7 +70,7 @@ export function drawVanishing(
   });
 }
 
-/** The plane's rectangle with a grid, one square a metre where the distance is known. */
+/** The plane's rectangle with a grid; if the distance is known, a square is one metre wide. */
 export function drawGrid(context: CanvasRenderingContext2D, view: View, scale: number): void {
   if (!view.unwarped || !view.to_photo) return;
   const [width, height] = view.unwarped;

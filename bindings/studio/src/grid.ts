@@ -4,7 +4,7 @@ import { drawVanishing, inPhoto, outlined, type View } from "./geometry";
 
 type Point = [number, number];
 
-/** How near to a corner or a side a pointer takes hold of it, in pixels of the screen; a finger is less exact. */
+/** Distance from a corner or a side within which a pointer grabs it, in pixels of the screen; larger for fingers. */
 const REACH = { corner: 16, side: 9, finger: 1.6 };
 const HANDLE = 8;
 const CELLS = 4;
@@ -15,7 +15,7 @@ const OUTSIDE = 1;
 
 export class Grid {
   corners: Point[] = [];
-  /** The corners that a drag moves; with the keyboard it is one. */
+  /** The corners that a drag moves; the keyboard moves one corner. */
   private held: number[] = [];
   private from: Point | null = null;
   private before: Point[] = [];
@@ -32,7 +32,7 @@ export class Grid {
     return this.from !== null;
   }
 
-  /** Begins a drag of a corner, a side or the whole; false if the pointer is beside it. */
+  /** Begins a drag of a corner, a side or the whole grid; false if the pointer is outside the grid. */
   begin(at: Point, scale: number, isFinger: boolean): boolean {
     const reach = (isFinger ? REACH.finger : 1) / scale;
     const far = this.corners.map((c) => Math.hypot(c[0] - at[0], c[1] - at[1]));
@@ -73,7 +73,7 @@ export class Grid {
     this.selected = (this.selected + 1) % 4;
   }
 
-  /** Corners that form no rectangle in perspective are not taken. */
+  /** Refuses corners that are not a rectangle in perspective. */
   private move(which: number[], dx: number, dy: number, size: Point, from: Point[]): void {
     const moved = from.map((c, i): Point => {
       if (!which.includes(i)) return c;
@@ -82,7 +82,7 @@ export class Grid {
     if (isConvex(moved, size)) this.corners = moved;
   }
 
-  /** x and y of the corners, as the project has them. */
+  /** x and y of the corners, in the order of the project. */
   get numbers(): number[] {
     return this.corners.flat().map((x) => Math.round(100 * x) / 100);
   }
@@ -116,7 +116,7 @@ export class Grid {
   }
 }
 
-/** A rectangle of the plane that the photo shows whole; without a plane, one as of a ceiling ahead. */
+/** A rectangle of the plane that lies whole in the photo; without a plane, a rectangle like that of a ceiling ahead. */
 export function proposal(view: View | null, [width, height]: Point): Point[] {
   const isIn = ([x, y]: Point) =>
     x > MARGIN * width && x < (1 - MARGIN) * width && y > MARGIN * height && y < (1 - MARGIN) * height;
@@ -188,7 +188,7 @@ function turns(corners: Point[]): number[] {
   });
 }
 
-/** Whether all corners turn the same way, and clearly so. */
+/** Whether the turns at all corners have one sign and are clearly not zero. */
 function isConvex(corners: Point[], size: Point): boolean {
   const least = 1e-4 * size[0] * size[1];
   const all = turns(corners);

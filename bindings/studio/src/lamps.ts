@@ -15,7 +15,7 @@ export interface Lamp {
   size: [number, number];
   flux: number;
   cct: number;
-  added: number | null; // which addition of the user it is
+  added: number | null; // index among the lamps that the user has added
 }
 
 export type Zone = [number, number, number, number];
@@ -39,7 +39,7 @@ export class LampList {
   private mix: Record<string, number> = {};
   private added: Added[] = [];
   private isAdding = false; // the next click on the plan adds a lamp
-  private adding = 0; // and this is its kind
+  private adding = 0; // the kind of this lamp
   private isHeld = false; // a slider is being dragged, which a new list would take away
   onMix: (mix: Record<string, number>) => void = () => {};
   onShift: (du: number, dv: number) => void = () => {};
@@ -147,7 +147,8 @@ export class LampList {
     );
   }
 
-  /** The next click on the plan adds a lamp of a kind; with a key, it comes to the middle of the ceiling. */
+  /** The next click on the plan adds a lamp of a kind; if a key starts this, the lamp is placed in the middle of the
+   * ceiling. */
   private beginAdding(kind: number, event: MouseEvent): void {
     if (event.detail === 0) {
       const [width, height] = this.surface!.size;
@@ -164,7 +165,7 @@ export class LampList {
     this.onAdded([...this.added, [kind, ...(at.map((x) => Math.round(1000 * x) / 1000) as [number, number])]]);
   }
 
-  /** The share of its light that a kind gives. */
+  /** The factor of the light of a kind of lamp. */
   private dimmer(kind: number): HTMLElement {
     const value = Math.round(100 * (this.mix[kind] ?? 1));
     const out = make("output", { for: `mix-${kind}` }, `${value} %`);
@@ -291,7 +292,7 @@ export class LampList {
     this.draw();
   }
 
-  /** Takes out the lamp at a place, or puts back what was there. */
+  /** Takes out the lamp at a place, or puts back the lamp that was taken out there. */
   private toggle(at: [number, number]): void {
     if (this.isAdding) return this.add(this.adding, at);
     const inside = ([u0, v0, u1, v1]: Zone) => at[0] >= u0 && at[0] <= u1 && at[1] >= v0 && at[1] <= v1;

@@ -1,4 +1,4 @@
-// The illuminance on the work plane: numbers, and a plan in colours that every eye can order.
+// The illuminance on the work plane: numbers, and a plan whose colours people with any colour vision can order.
 
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
@@ -34,7 +34,7 @@ export function colourAt(share: number): string {
 const DESK = "desk";
 const DESK_HEIGHT = 0.75;
 
-/** The illuminance: its plane, its numbers, and the wish for another mean. */
+/** The illuminance: its plane, its numbers, and the field for another mean. */
 export class LuxPanel {
   private readonly plane = make("select", { id: "lux-plane" });
   private readonly height = make("input", { type: "number", id: "lux-height", min: 0, max: 100, step: 0.05 });
@@ -51,7 +51,7 @@ export class LuxPanel {
   private readonly where = make("p", { class: "quiet" });
   private mean = 0;
   onPlane: (plane: LuxPlane) => void = () => {};
-  /** All lamps give this many times the light. */
+  /** Multiplies the light of all lamps. */
   onFactor: (factor: number) => void = () => {};
 
   constructor() {
@@ -121,7 +121,7 @@ export class LuxPanel {
   }
 }
 
-/** Where the plane lies, and which points do not count. */
+/** Describes the place of the plane, and the points that do not count. */
 function words(message: Message): string {
   const inside = message.inside as number;
   const where = message.surface

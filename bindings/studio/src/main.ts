@@ -13,7 +13,7 @@ import "./style_windows.css";
 
 const SESSION_KEY = "luxfer-studio-session";
 
-/** The project to begin with: that of this tab, one that this browser has kept, or the server's. */
+/** The project to begin with: the project of this tab, or one that this browser has kept, or the server's. */
 function choose(start: Start): { store: Store; restored: number | null } {
   const mine = sessionStorage.getItem(SESSION_KEY);
   const all = kept();

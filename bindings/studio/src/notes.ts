@@ -1,4 +1,4 @@
-// What the library says about its results: proposals, warnings, and where one more stroke helps most.
+// The library's notes on its results: proposals, warnings, and the place where one more stroke helps most.
 
 import { adviceFor } from "./advice";
 import type { Message } from "./api";
@@ -45,7 +45,7 @@ export class Notes {
     this.draw();
   }
 
-  /** Forgets what was said of a photo. */
+  /** Forgets the notes on a photo. */
   clear(): void {
     this.warnings = [];
     this.isKnown = false;

@@ -5,7 +5,7 @@ import { byId, make, notice } from "./dom";
 
 const KINDS: [string, string, string][] = [
   ["glb", "Room (GLB)", "the room with its lamps, in cd/m², for Blender and other programs"],
-  ["usd", "Room (USD)", "the same as .usdz, for Omniverse, Houdini and others"],
+  ["usd", "Room (USD)", "the lit room as .usdz, for Omniverse, Houdini and others"],
   ["png", "Picture (PNG)", "at the exposure shown"],
   ["exr", "Picture (EXR)", "linear, in cd/m²"],
   ["csv", "Lamps (CSV)", "the schedule: place in metres, size, cd/m², lumens, kelvin"],
@@ -13,8 +13,8 @@ const KINDS: [string, string, string][] = [
   ["photometry", "IES, LDT, TM-33, GLDF", "a zip with a file of each format for each kind of lamp"],
   ["room", "Unlit room (GLB)", "as the programs read it, also if it was opened as USD"],
   ["project", "Project (JSON)", "opens here again with the same result"],
-  ["program", "Program (Python)", "does the same without the studio"],
-  ["program-c", "Program (C)", "the same in C, which is C++ too"],
+  ["program", "Program (Python)", "gives the same results without the studio"],
+  ["program-c", "Program (C)", "such a program in C, which is C++ too"],
 ];
 
 export function showOut(session: string, openProject: () => void): void {

@@ -33,10 +33,10 @@ const STAGES: Record<string, string> = {
 /** Stages of the other tab; the last one ends its work. */
 const OF_STYLISE = new Set(["guides", "painting", ""]);
 
-/** What belongs to a photo and means nothing in another one. */
+/** Entries of the project that belong to a photo and mean nothing in another photo. */
 const EMPTY_PHOTO = { strokes: [], removed: [], grid: null };
 
-/** What belongs to a room and means nothing in another one. */
+/** Entries of the project that belong to a room and mean nothing in another room. */
 const EMPTY_ROOM = { surface: null, ...PLAIN_LAMPS, lux_plane: { surface: null, height: 0.75 }, camera: null };
 
 export class Page {
@@ -116,7 +116,7 @@ export class Page {
     const { store, photo, room } = this;
     photo.onDraft = (stroke) => {
       this.draft = stroke ? { ...stroke, points: [...stroke.points] } : null;
-      this.send(stroke !== null); // a stroke that is given up lets the work go on
+      this.send(stroke !== null); // work continues after a stroke is given up
     };
     photo.onStroke = (stroke) => {
       this.draft = null;
@@ -267,7 +267,7 @@ export class Page {
     this.hint();
   }
 
-  /** What a stroke of the tool says, until the user has painted. */
+  /** Shows the hint of the tool until the user has painted. */
   private hint(): void {
     const { tool, label, hint } = TOOLS.find((t) => t.tool === this.photo.tool)!;
     byId("hint").textContent = `${label}: ${hint}`;
@@ -377,7 +377,7 @@ export class Page {
     } else this.notes.fail(String(message.message));
   }
 
-  /** Another photo: nothing of the former one is said any more. */
+  /** Another photo: removes all notes on the former photo. */
   private takePhoto(message: Message, rgb: Uint8Array): void {
     this.photo.setPhoto(rgbPicture(message.width, message.height, rgb), message.full);
     this.photo.lamps = [];

@@ -112,7 +112,7 @@ export class PatternForm {
     }
   }
 
-  /** What the library makes of the photo: the distance of its camera, and a white that fits its light. */
+  /** The library's estimates for the photo: the distance of its camera, and a likely luminance of its white. */
   setEstimates(message: Message): void {
     const [value, low, high] = message.proposed_white as number[];
     const distance = Number.isFinite(message.distance)

@@ -76,7 +76,7 @@ export class PhotoView {
     this.redraw();
   }
 
-  /** The grid as the project has it, or as the library has found it. */
+  /** The grid of the project, or else the grid that the library has found. */
   setGrid(corners: number[] | null): void {
     this.grid.set(corners, this.view, this.size);
     this.redraw();
@@ -202,7 +202,7 @@ export class PhotoView {
     this.zoomBy(Math.exp(-event.deltaY / 400), this.toPhoto(event));
   }
 
-  /** Ends a stroke: it counts, or it never was. */
+  /** Ends a stroke, and keeps or discards it. */
   private finish(counts: boolean): void {
     this.isPenDown = false;
     this.grid.end(counts);
@@ -225,7 +225,7 @@ export class PhotoView {
     };
     this.cursor ??= [this.size[0] / 2, this.size[1] / 2];
     if (this.tool === "grid" && (moves[event.key] || event.key === " " || event.key === "Enter")) {
-      // A step is a fifth of the brush's: corners are set exactly.
+      // A step is a fifth of a step of the brush, so that corners can be set exactly.
       const [dx, dy] = (moves[event.key] ?? [0, 0]).map((d) => d / 5);
       if (moves[event.key]) this.grid.step(dx, dy, this.size);
       else this.grid.next();

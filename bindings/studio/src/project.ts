@@ -1,4 +1,5 @@
-// The project: all that decides the result. It is kept in the browser at every change, and changes can be undone.
+// The project: all inputs that determine the result. It is kept in the browser at every change, and changes can be
+// undone.
 
 export type Kind = "plane" | "not-plane" | "light" | "not-light";
 
@@ -58,7 +59,7 @@ export interface Project {
 /** The lamps of a surface before anybody has changed them. */
 export const PLAIN_LAMPS: Pick<Project, "zones" | "mix" | "added"> = { zones: [], mix: {}, added: [] };
 
-/** Changes of one thing within this time, such as of a slider, are undone together. */
+/** Changes of one entry within this time, such as by a slider, are undone together. */
 const TOGETHER_MS = 800;
 const PREFIX = "luxfer-studio/";
 
@@ -82,7 +83,7 @@ export class Store {
     this.set({ ...this.project, plan: null, ...patch }, what);
   }
 
-  /** Takes over what the server has decided, which nobody would undo and no result depends on anew. */
+  /** Takes over values that the server has chosen: they are not undone, and no result has to be computed again. */
   note(patch: Partial<Project>): void {
     this.project = { ...this.project, ...patch };
     this.keep();
@@ -165,7 +166,7 @@ function forgetOldest(except: string): void {
   if (oldest && PREFIX + oldest.session !== except) localStorage.removeItem(PREFIX + oldest.session);
 }
 
-/** Whether a project has anything that would be a loss. */
+/** Whether a project has any content worth keeping. */
 export function hasWork(project: Project): boolean {
   return (
     project.strokes.length + project.removed.length + project.zones.length + (project.added ?? []).length > 0 ||

@@ -140,7 +140,7 @@ export class RoomTools {
     }
   }
 
-  /** How a drag moves what lies on the surface, and the pattern that it leads to. */
+  /** The motion of a drag on the surface, and the pattern that results. */
   private motion(from: [number, number], to: [number, number]) {
     const surface = this.surface!;
     const [mu, mv] = [surface.size[0] / 2, surface.size[1] / 2];
@@ -151,7 +151,7 @@ export class RoomTools {
     return this.tool === "turn" ? turnBy(angle, surface) : sizeBy(by, surface);
   }
 
-  /** Mean length of the whole lamps; 0 if there is none. */
+  /** Mean length of the whole lamps; 0 if no lamp is whole. */
   private lampLength(): number {
     const whole = this.lamps.filter((l) => l.kind > 0);
     return whole.length ? whole.reduce((sum, l) => sum + l.size[0], 0) / whole.length : 0;
@@ -172,7 +172,7 @@ export class RoomTools {
 
   // -- keys
 
-  /** Handles a key of the tool; false if the view shall handle it. */
+  /** Handles a key of the tool; false if the view should handle it. */
   private key(event: KeyboardEvent): boolean {
     if (this.tool === "view" || !this.surface) return false;
     const arrows: Record<string, [number, number]> = {
@@ -203,7 +203,7 @@ export class RoomTools {
     if (count > 1) this.take(this.candidates[(at + by + count) % count].name);
   }
 
-  /** Chooses a surface, at once for the next click or key. */
+  /** Chooses a surface; takes effect before the next click or key. */
   private take(name: string): void {
     this.chosen = name;
     this.onSurface(name);
@@ -220,7 +220,7 @@ export class RoomTools {
     for (const lamp of this.lamps) outlined(context, this.room.outline(this.lampCorners(lamp)), []);
   }
 
-  /** Each candidate by its rectangle and its name; the chosen one is filled. */
+  /** Draws each candidate with its rectangle and its name; the chosen candidate is filled. */
   private drawCandidates(context: CanvasRenderingContext2D): void {
     const taken: [number, number][] = [];
     for (const candidate of this.candidates) {

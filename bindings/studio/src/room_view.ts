@@ -52,7 +52,7 @@ export class RoomView {
   private hasBefore = false;
   private spots: Spot[] = [];
   onCamera: (camera: Camera | null) => void = () => {};
-  /** Handles a key before the view does; true if it has. */
+  /** Handles a key before the view does; returns true if it has handled the key. */
   onKey: (event: KeyboardEvent) => boolean = () => false;
   /** Draws over the picture, in pixels of the screen. */
   drawOver: (context: CanvasRenderingContext2D) => void = () => {};
@@ -101,7 +101,7 @@ export class RoomView {
     this.paint();
   }
 
-  /** Places the camera without telling anybody. */
+  /** Places the camera without notifying the page. */
   setCamera(camera: Camera, isHome: boolean): void {
     if (isHome) this.home = camera;
     this.camera.position.set(...camera.position);
@@ -109,7 +109,7 @@ export class RoomView {
     this.camera.updateProjectionMatrix();
     const target = new Vector3(...camera.target);
     if (this.controls) {
-      // Turn about a point inside the room rather than one a metre ahead.
+      // Turn about a point inside the room instead of a point one metre ahead.
       const ahead = target.clone().sub(this.camera.position);
       const reach = Math.max(ahead.length(), 2.5);
       this.controls.target.copy(this.camera.position).add(ahead.setLength(reach));

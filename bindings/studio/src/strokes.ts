@@ -1,4 +1,4 @@
-// Strokes: what they look like, and painting them with mouse, pen, touch and keys.
+// Strokes: their look, and painting with mouse, pen, touch and keys.
 
 import type { Kind, Stroke } from "./project";
 
@@ -14,7 +14,7 @@ export interface ToolLook {
 
 /** Colours by Okabe and Ito, which people with any colour vision tell apart. */
 export const TOOLS: ToolLook[] = [
-  { tool: "plane", label: "Plane", hint: "paint on the ceiling, or whatever carries the lamps", colour: "#56b4e9", dashes: [] },
+  { tool: "plane", label: "Plane", hint: "paint on the ceiling, or on another plane with lamps", colour: "#56b4e9", dashes: [] },
   { tool: "not-plane", label: "Not plane", hint: "paint on walls, floor and furniture", colour: "#d55e00", dashes: [7, 5] },
   { tool: "light", label: "Light", hint: "paint on lamps that shine", colour: "#f0e442", dashes: [] },
   {
@@ -38,10 +38,10 @@ export function lookOf(kind: Tool): ToolLook {
   return TOOLS.find((t) => t.tool === kind)!;
 }
 
-/** Points nearer than this, as a share of the brush, are left out: they say nothing. */
+/** Points nearer than this to the one before, as a share of the brush, are left out. */
 const STEP = 0.3;
 
-/** A stroke in the making. */
+/** A stroke that is being painted. */
 export class Pen {
   stroke: Stroke | null = null;
 
@@ -49,7 +49,7 @@ export class Pen {
     this.stroke = { kind, radius: round(radius), points: [round(x), round(y)] };
   }
 
-  /** Goes on to a point; false if it is too near to matter. */
+  /** Continues the stroke to a point; false if the point is too near to the one before. */
   extend(x: number, y: number): boolean {
     const stroke = this.stroke;
     if (!stroke) return false;

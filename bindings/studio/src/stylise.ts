@@ -56,7 +56,7 @@ export class Stylise {
     if (isNew) this.ask();
   }
 
-  /** A server has been reached, which may be a new one. */
+  /** The page has connected to a server, which may be a new one. */
   connected(): void {
     this.isSent = false;
     if (this.isShown) this.ask();
@@ -71,7 +71,7 @@ export class Stylise {
     this.ask();
   }
 
-  /** Asks for the picture; the user's own artwork goes to the server before. */
+  /** Requests the picture, after sending the user's own artwork to the server. */
   private ask(): void {
     if (!this.isShown) return;
     if (this.artwork === OWN && !this.isSent) return void this.giveCanvas();

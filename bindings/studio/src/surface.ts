@@ -13,10 +13,10 @@ export interface Rectangle {
   size: [number, number];
 }
 
-/** What a drag does: to a point of the surface, for the preview, and to the pattern. */
+/** The effect of a drag on a point of the surface, for the preview, and on the pattern. */
 export interface Motion {
   preview: (at: [number, number]) => [number, number];
-  /** Needs the length of a whole lamp if it sets the size; null if there is none. */
+  /** Needs the length of a whole lamp if it sets the size; null if no lamp is whole. */
   pattern: (before: Pattern, lamp: number) => Pattern | null;
 }
 

@@ -1,4 +1,4 @@
-// Speed against accuracy: one slider, with what the plan predicts and what the picture then took.
+// Speed against accuracy: one slider, with the plan's prediction and then the actual figures of the picture.
 
 import type { Message } from "./api";
 import { byId, make, percent, seconds } from "./dom";
@@ -46,7 +46,7 @@ export class Trade {
     this.slider.setAttribute("aria-valuetext", percent(noise));
   }
 
-  /** Until the plan for a new goal is there: noise falls with the square root of the time. */
+  /** An estimate until the plan for a new goal arrives: noise falls with the square root of the time. */
   private preview(): void {
     this.goal.textContent = percent(this.noise);
     this.slider.setAttribute("aria-valuetext", percent(this.noise));
