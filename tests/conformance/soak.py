@@ -19,7 +19,7 @@ import luxfer
 from luxfer import errors
 from luxfer.image import np
 
-#: Growth that is none, in MiB: what a context or a job that is about to end still holds.
+#: Growth in MiB that is not counted: the memory that a context or a job that is about to end still holds.
 SLACK = 1.0
 
 

@@ -1,4 +1,4 @@
-// Bad input through the C interface: each call ends with a status and with a message that says what to do, writes no
+// Bad input through the C interface: each call ends with a status and with a message that gives a remedy, writes no
 // output and leaks nothing, and the objects stay usable. The program calls the C functions and not bindings/cpp, so
 // that it sees every status and every output.
 #include "check.hpp"

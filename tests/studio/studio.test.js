@@ -362,7 +362,7 @@ test("stylise: what is painted on the ball is painted on the picture", { skip },
   await page.waitForFunction(() => document.getElementById("artwork-own")?.checked);
 });
 
-test("every warning of the library is shown, with what to do here", { skip }, async (t) => {
+test("every warning of the library is shown, with advice for this page", { skip }, async (t) => {
   const { address } = await server();
   const page = await (await browse(t)).newPage();
   const codes = warningCodes();
@@ -483,7 +483,7 @@ test("a killed server loses no stroke", { skip }, async (t) => {
   assert.notEqual(await state(again, "masks"), made);
 });
 
-test("who is not let in, and files that are none", { skip }, async (t) => {
+test("requests that are refused, and files that cannot be used", { skip }, async (t) => {
   const { address } = await server();
   const browser = await browse(t);
   const page = await open(t, browser, address, isThere);
@@ -527,7 +527,7 @@ test("who is not let in, and files that are none", { skip }, async (t) => {
   await page.locator("#notice-text", { hasText: "broken.jpg cannot be read" }).waitFor();
   assert.equal(await state(page, "strokes"), "0");
 
-  // A photo that shows nothing: what to do is said, the picture is marked, and nothing is lost.
+  // A photo that shows nothing: a message gives advice, the picture is marked, and nothing is lost.
   const grey = await page.evaluate(() => {
     const canvas = Object.assign(document.createElement("canvas"), { width: 300, height: 200 });
     canvas.getContext("2d").fillStyle = "#888";

@@ -93,7 +93,7 @@ fn shift_between(from: &[Image], to: &[Image], max_shift: isize, job: Job) -> Re
         }
         best = next;
     }
-    // The shift must be better than none by more than chance.
+    // The shift must be better than no shift by more than chance.
     let unmoved = difference(&bitmaps, [0; 2]);
     let chance = SIGNIFICANT * (unmoved[0] as f64).sqrt() / unmoved[1].max(1) as f64;
     Ok(if part(best.1) < part(unmoved) - chance { best.0 } else { [0; 2] })

@@ -93,6 +93,6 @@ pub struct PhotoReport {
     pub error: f64,
     /// Exposure relative to the reference according to the metadata; 0: unknown.
     pub stated: f64,
-    /// Column and row of this photo that show the same as column 0 and row 0 of the reference.
+    /// Column and row of this photo that show the part of the view that column 0 and row 0 of the reference show.
     pub shift: [isize; 2],
 }

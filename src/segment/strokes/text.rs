@@ -26,7 +26,7 @@ pub fn parse(text: &str, width: usize, height: usize) -> Result<StrokeSet> {
             "light" => Kind::Light,
             "not-light" => Kind::NotLight,
             other => {
-                let what = format!("'{other}' is none of plane, not-plane, light, not-light");
+                let what = format!("'{other}' is not plane, not-plane, light or not-light");
                 return Err(Error::format(what).context(place()));
             }
         };
