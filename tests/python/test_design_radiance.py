@@ -114,8 +114,8 @@ class Exported(Case):
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(io.StringIO()):
             with mock.patch.object(radiance, "recompute", side_effect=recomputed):
                 self.assertEqual(design.main(words), 6)
-        told = json.loads(out.getvalue())["radiance"]
-        self.assertEqual(told, [{"requirement": "mean of task 1 at least 100 lx", "value": 0.5, "confirmed": False}])
+        found = json.loads(out.getvalue())["radiance"]
+        self.assertEqual(found, [{"requirement": "mean of task 1 at least 100 lx", "value": 0.5, "confirmed": False}])
         with mock.patch.object(radiance, "recompute", side_effect=ImportError("rtrace was not found")):
             with self.assertRaisesRegex(Failure, "--radiance: rtrace was not found"):
                 words = argparse.Namespace(radiance=str(self.folder / "out"))

@@ -88,8 +88,8 @@ class Files(unittest.TestCase):
                 first, second = scene.camera(0), back.camera(0)
                 self.assertAlmostEqual(first["fov_y"], second["fov_y"], places=5)
                 np.testing.assert_allclose(second["position"], first["position"], atol=1e-5)
-                sight = [np.subtract(c["target"], c["position"]) for c in (first, second)]
-                np.testing.assert_allclose(*(s / np.linalg.norm(s) for s in sight), atol=1e-5)
+                directions = [np.subtract(c["target"], c["position"]) for c in (first, second)]
+                np.testing.assert_allclose(*(s / np.linalg.norm(s) for s in directions), atol=1e-5)
 
     def test_axes_units_and_transforms(self):
         stage = self.stage("Z", 0.01)

@@ -48,7 +48,7 @@ export function drawVanishing(
   [width, height]: [number, number],
   scale: number,
 ): void {
-  const reach = 2 * Math.hypot(width, height);
+  const maxLength = 2 * Math.hypot(width, height);
   const step = FAN * width;
   vanishing.forEach(([x, y, w], axis) => {
     const path = new Path2D();
@@ -60,7 +60,7 @@ export function drawVanishing(
       const length = Math.hypot(dx, dy) || 1;
       dx /= length;
       dy /= length;
-      const ahead = Math.abs(w) > FINITE ? Math.min(reach, length) : reach;
+      const ahead = Math.abs(w) > FINITE ? Math.min(maxLength, length) : maxLength;
       path.moveTo(px, py);
       path.lineTo(px + dx * ahead, py + dy * ahead);
     }

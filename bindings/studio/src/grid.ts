@@ -5,7 +5,7 @@ import { drawVanishing, inPhoto, outlined, type View } from "./geometry";
 type Point = [number, number];
 
 /** Distance from a corner or a side within which a pointer grabs it, in pixels of the screen; larger for fingers. */
-const REACH = { corner: 16, side: 9, finger: 1.6 };
+const GRAB_DISTANCE = { corner: 16, side: 9, finger: 1.6 };
 const HANDLE = 8;
 const CELLS = 4;
 /** The proposed rectangle stays within this share of the photo on each side. */
@@ -34,14 +34,14 @@ export class Grid {
 
   /** Begins a drag of a corner, a side or the whole grid; false if the pointer is outside the grid. */
   begin(at: Point, scale: number, isFinger: boolean): boolean {
-    const reach = (isFinger ? REACH.finger : 1) / scale;
+    const factor = (isFinger ? GRAB_DISTANCE.finger : 1) / scale;
     const far = this.corners.map((c) => Math.hypot(c[0] - at[0], c[1] - at[1]));
     const nearest = far.indexOf(Math.min(...far));
-    if (far[nearest] <= REACH.corner * reach) this.held = [nearest];
+    if (far[nearest] <= GRAB_DISTANCE.corner * factor) this.held = [nearest];
     else {
       const sides = this.corners.map((c, i) => distance(at, c, this.corners[(i + 1) % 4]));
       const side = sides.indexOf(Math.min(...sides));
-      if (sides[side] <= REACH.side * reach) this.held = [side, (side + 1) % 4];
+      if (sides[side] <= GRAB_DISTANCE.side * factor) this.held = [side, (side + 1) % 4];
       else if (isInside(at, this.corners)) this.held = [0, 1, 2, 3];
       else return false;
     }

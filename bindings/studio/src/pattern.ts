@@ -99,9 +99,9 @@ export class PatternForm {
     this.length.closest("label")!.hidden = pattern.scale === "distance" || pattern.scale === "across";
     this.turn.value = String(Math.round(pattern.rotation / DEGREES));
     [this.across, this.along].forEach((input, i) => {
-      const reach = Math.max(MAX_SHIFT, Math.abs(pattern.offset[i])); // a drag may go farther
-      input.min = String(-reach);
-      input.max = String(reach);
+      const limit = Math.max(MAX_SHIFT, Math.abs(pattern.offset[i])); // a drag may go farther
+      input.min = String(-limit);
+      input.max = String(limit);
       input.value = String(pattern.offset[i]);
     });
     this.whole.checked = pattern.keep_whole;

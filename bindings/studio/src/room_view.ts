@@ -29,7 +29,7 @@ const KEY_DOLLY = 1.1;
 const REST_MS = 250;
 /** Marks end at this distance from the camera, and the pointer reaches this far, in metres. */
 const NEAR = 0.05;
-const MAX_REACH = 1000;
+const MAX_DISTANCE = 1000;
 
 export interface Spot {
   position: Vector;
@@ -111,8 +111,8 @@ export class RoomView {
     if (this.controls) {
       // Turn about a point inside the room instead of a point one metre ahead.
       const ahead = target.clone().sub(this.camera.position);
-      const reach = Math.max(ahead.length(), 2.5);
-      this.controls.target.copy(this.camera.position).add(ahead.setLength(reach));
+      const distance = Math.max(ahead.length(), 2.5);
+      this.controls.target.copy(this.camera.position).add(ahead.setLength(distance));
       this.quietly(() => this.controls!.update());
     } else this.camera.lookAt(target);
     this.paint();
@@ -230,7 +230,7 @@ export class RoomView {
     const ahead = new Vector3(x, y, 0.5).unproject(this.camera).sub(eye).normalize();
     const towards = dot(ahead.toArray(), surface.normal);
     const far = dot(surface.origin.map((o, i) => o - eye.toArray()[i]), surface.normal) / towards;
-    if (!(far > 0 && far < MAX_REACH)) return null;
+    if (!(far > 0 && far < MAX_DISTANCE)) return null;
     const at = ahead.multiplyScalar(far).add(eye).toArray().map((p, i) => p - surface.origin[i]);
     return [dot(at, surface.u_axis), dot(at, surface.v_axis)];
   }
@@ -258,7 +258,7 @@ export class RoomView {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (this.onKey(event)) return event.preventDefault();
     const ahead = this.camera.getWorldDirection(new Vector3());
-    const reach = this.controls ? this.controls.target.distanceTo(this.camera.position) : 2.5;
+    const distance = this.controls ? this.controls.target.distanceTo(this.camera.position) : 2.5;
     const turns: Record<string, [number, number]> = {
       ArrowLeft: [KEY_ANGLE, 0],
       ArrowRight: [-KEY_ANGLE, 0],
@@ -272,12 +272,12 @@ export class RoomView {
       ahead.applyAxisAngle(this.camera.up, about);
       if (Math.abs(steep + up) < 1.4) ahead.applyAxisAngle(side, up);
     } else if (event.key === "+" || event.key === "=")
-      this.camera.position.addScaledVector(ahead, reach * (KEY_DOLLY - 1));
-    else if (event.key === "-") this.camera.position.addScaledVector(ahead, -reach * (KEY_DOLLY - 1));
+      this.camera.position.addScaledVector(ahead, distance * (KEY_DOLLY - 1));
+    else if (event.key === "-") this.camera.position.addScaledVector(ahead, -distance * (KEY_DOLLY - 1));
     else if (event.key === "Home") return this.goHome();
     else return;
     event.preventDefault();
-    const target = ahead.multiplyScalar(reach).add(this.camera.position);
+    const target = ahead.multiplyScalar(distance).add(this.camera.position);
     this.camera.lookAt(target);
     this.controls?.target.copy(target);
     this.quietly(() => this.controls?.update());

@@ -31,7 +31,7 @@ REPEATS = 0.75
 #: Smallest sine of the angle between the vectors of a lattice. [convention]
 OPEN_ANGLE = 0.5
 #: Cells of the lattice on each side of the middle that are looked at. [convention]
-REACH = 40
+MAX_CELLS = 40
 
 
 @dataclass(frozen=True)
@@ -82,8 +82,8 @@ class Motif:
         middle = np.array([room.length, room.width]) / 2
         c, s = math.cos(math.radians(turn)), math.sin(math.radians(turn))
         moved = scale * np.array([[c, -s], [s, c]]) @ self.lattice
-        reach = min(REACH, 2 + math.ceil(math.hypot(room.length, room.width) / np.linalg.svd(moved)[1][-1]))
-        steps = np.arange(-reach, reach + 1)
+        cells = min(MAX_CELLS, 2 + math.ceil(math.hypot(room.length, room.width) / np.linalg.svd(moved)[1][-1]))
+        steps = np.arange(-cells, cells + 1)
         grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 1, 2)
         shares = grid + self.cells[None] + np.asarray(offset) + np.linalg.solve(self.lattice, self.anchor - middle)
         places = middle + shares.reshape(-1, 2) @ moved.T
@@ -99,8 +99,8 @@ def find(room: Room, luminaires: Sequence[Luminaire]) -> Motif:
     vectors = _repeats(room, lamps)
     first = vectors[0] if vectors else np.array([room.length, 0.0])
     across = np.array([-first[1], first[0]]) / np.linalg.norm(first)
-    reach = float(abs(across) @ (room.length, room.width))
-    second = vectors[1] if len(vectors) > 1 else across * reach
+    extent = float(abs(across) @ (room.length, room.width))
+    second = vectors[1] if len(vectors) > 1 else across * extent
     lattice = np.stack([first, second], axis=1)
     shares = np.linalg.solve(lattice, lamps.places.T).T
     cells, groups = _cells(shares - shares[0])
@@ -150,9 +150,9 @@ def extents(angles: NDArray[np.float64], sizes: NDArray[np.float64]) -> NDArray[
 
 def whole(room: Room, lamps: Placed) -> Placed:
     """The lamps that the border of the ceiling does not cut; all lamps if it cuts all."""
-    reach = extents(lamps.angles, lamps.sizes)
-    far = lamps.places + reach > np.array([room.length, room.width]) - BORDER
-    at_border = (far | (lamps.places - reach < BORDER)).any(axis=1)
+    half_sides = extents(lamps.angles, lamps.sizes)
+    far = lamps.places + half_sides > np.array([room.length, room.width]) - BORDER
+    at_border = (far | (lamps.places - half_sides < BORDER)).any(axis=1)
     area = lamps.sizes.prod(axis=1)
     cut = at_border & (area < WHOLE * area.max(initial=0))
     return lamps if cut.all() else lamps.only(~cut)

@@ -47,7 +47,7 @@ AFTER = {
     "picture": "first",
 }
 #: Maximum distance of a point from the lamp that it selects, as a share of the photo's width.
-REACH = 0.015
+MAX_LAMP_DISTANCE = 0.015
 
 
 class Light:
@@ -141,7 +141,7 @@ class Light:
             self.find_masks()
         mask = self.lights.numpy()[..., 0]
         if project["removed"]:
-            mask = pictures.without(mask, project["removed"], REACH * mask.shape[1])
+            mask = pictures.without(mask, project["removed"], MAX_LAMP_DISTANCE * mask.shape[1])
             if not (mask > 0.5).any():
                 raise ValueError("all lamps have been taken out of the photo: undo one")
             self.transfer.use_mask("lights", luxfer.Image(self.context, mask))

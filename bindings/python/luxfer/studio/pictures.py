@@ -92,16 +92,16 @@ def boxes(labels: np.ndarray[Any, Any], count: int) -> list[dict[str, Any]]:
     return [{"box": [*map(int, low[i]), *map(int, high[i])], "area": int(area[i])} for i in range(count)]
 
 
-def without(mask: np.ndarray[Any, Any], points: list[list[float]], reach: float) -> np.ndarray[Any, Any]:
-    """Removes from a mask the region at each point, or else the nearest region within `reach` pixels of it."""
+def without(mask: np.ndarray[Any, Any], points: list[list[float]], max_distance: float) -> np.ndarray[Any, Any]:
+    """Removes from a mask the region at each point, or else the nearest region within `max_distance` pixels of it."""
     labels, count = regions(mask > 0.5)
     if not count or not points:
         return mask
     out = mask.copy()
     height, width = mask.shape
     for x, y in points:
-        x0, x1 = int(max(0, x - reach)), int(min(width, x + reach + 1))
-        y0, y1 = int(max(0, y - reach)), int(min(height, y + reach + 1))
+        x0, x1 = int(max(0, x - max_distance)), int(min(width, x + max_distance + 1))
+        y0, y1 = int(max(0, y - max_distance)), int(min(height, y + max_distance + 1))
         window = labels[y0:y1, x0:x1]
         ys, xs = np.nonzero(window)
         if len(xs):

@@ -118,10 +118,10 @@ static void fill(const unsigned char *is_lit, int *labels, int width, int height
 /* [end regions] */
 /* [start removed] */
 
-/* Returns the lit pixel that is nearest to a point, within `reach` pixels along each axis; -1 if there is none. */
-static int nearest_lit(const unsigned char *is_lit, int width, int height, double x, double y, double reach) {
-    const int x0 = (int)fmax(0, x - reach), x1 = (int)fmin(width, x + reach + 1);
-    const int y0 = (int)fmax(0, y - reach), y1 = (int)fmin(height, y + reach + 1);
+/* Returns the lit pixel nearest to a point, within `max_distance` pixels along each axis; -1 if no pixel is. */
+static int nearest_lit(const unsigned char *is_lit, int width, int height, double x, double y, double max_distance) {
+    const int x0 = (int)fmax(0, x - max_distance), x1 = (int)fmin(width, x + max_distance + 1);
+    const int y0 = (int)fmax(0, y - max_distance), y1 = (int)fmin(height, y + max_distance + 1);
     double smallest = INFINITY;
     int i, j, found = -1;
     for (j = y0; j < y1; j++)
@@ -149,7 +149,7 @@ static void take_out(luxfer_transfer *transfer) {
     for (i = 0; i < (int)(width * height); i++) is_lit[i] = values[i] > 0.5f;
     for (k = 0; k < removed_lamp_count; k++) {
         const double *at = removed_lamps[k];
-        const int start = nearest_lit(is_lit, (int)width, (int)height, at[0], at[1], reach * width);
+        const int start = nearest_lit(is_lit, (int)width, (int)height, at[0], at[1], max_lamp_distance * width);
         if (start >= 0 && !labels[start]) fill(is_lit, labels, (int)width, (int)height, start, 1);
     }
     for (i = 0; i < (int)(width * height); i++)
@@ -286,7 +286,8 @@ static void fit_map(luxfer_scene *lit, uint32_t mesh, uint32_t uv_set, texture *
     positions = (float *)allocate(3 * vertices, sizeof(float));
     uvs = (float *)allocate(2 * vertices, sizeof(float));
     check(luxfer_scene_read_vertices(lit, mesh, LUXFER_VERTEX_POSITION, positions, vertices), "mesh");
-    check(luxfer_scene_read_vertices(lit, mesh, uv_set ? LUXFER_VERTEX_UV_1 : LUXFER_VERTEX_UV_0, uvs, vertices), "mesh");
+    check(luxfer_scene_read_vertices(lit, mesh, uv_set ? LUXFER_VERTEX_UV_1 : LUXFER_VERTEX_UV_0, uvs,
+                                     vertices), "mesh");
     for (i = 0; i < vertices; i++) { /* sum up the normal equations */
         const double position[3] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
         double known[3] = {0, 0, 1};

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from . import mix
-from .light import REACH, RELIGHT
+from .light import MAX_LAMP_DISTANCE, RELIGHT
 from .live import PHASES
 from .project import Project
 from .room import texture_settings
@@ -39,7 +39,7 @@ REMOVED = """
 from luxfer.studio.pictures import without
 
 mask = transfer.image("lights-mask").numpy()[..., 0]
-transfer.use_mask("lights", without(mask, {removed}, {reach} * mask.shape[1]))
+transfer.use_mask("lights", without(mask, {removed}, {max_distance} * mask.shape[1]))
 """
 
 GRID = """
@@ -108,7 +108,7 @@ def program(
         strokes="[\n" + "".join(strokes) + "]" if strokes else "[]",
     )
     if project["removed"]:
-        out += REMOVED.format(removed=project["removed"], reach=REACH)
+        out += REMOVED.format(removed=project["removed"], max_distance=MAX_LAMP_DISTANCE)
     if by_grid:
         out += GRID.format(axes=by_grid[0], focal=by_grid[1])
     is_plain = mix.is_plain(project["mix"], project["added"])

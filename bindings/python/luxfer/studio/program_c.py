@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from . import grid, mix
-from .light import REACH, RELIGHT
+from .light import MAX_LAMP_DISTANCE, RELIGHT
 from .live import PHASES
 from .program import PhotoCamera
 from .project import Project
@@ -98,7 +98,7 @@ def data_of(
         out += [
             "\n/* A pixel on each lamp of the photo that was taken out; it may miss it by a share of the width. */\n",
             array("double", "removed_lamp", [numbers(place) for place in project["removed"]], "{0, 0}", "[2]"),
-            f"static const double reach = {REACH!r};\n",
+            f"static const double max_lamp_distance = {MAX_LAMP_DISTANCE!r};\n",
         ]
     if by_grid:
         out += [
