@@ -23,8 +23,8 @@
  * A colour, or an amount of light per channel, is an array of three numbers: red, green, blue. The numbers are floats.
  * They are doubles in the estimates of solvers and in calculations with such estimates or with the colours of LEDs.
  *
- * The length of an array of the caller is a size_t. Other numbers of things are uint32_t; numbers of triangles, which
- * may be larger, are uint64_t.
+ * The length of an array of the caller is a size_t. Other numbers of things are uint32_t; numbers of triangles, and of
+ * the vertices of a mesh that is read back, are uint64_t.
  *
  * SPDX-License-Identifier: MIT OR Apache-2.0
  */

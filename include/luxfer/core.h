@@ -702,10 +702,10 @@ typedef struct luxfer_merge_report {
 
 /**
  * Merges count photos of one view, in [1, 16], in any order, into one image. The photos have one size and one number
- * of channels (1, 3 or 4; alpha is that of the reference). They may be shifted by whole pixels, as photos from the
- * hand are; rotations and things that move cost only the use of other exposures in their places. params may be NULL
- * for the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is synchronous.
- * The caller releases *image. Any thread.
+ * of channels (1, 3 or 4; the result has the alpha of the reference). They may be shifted by whole pixels, as photos
+ * from the hand are. Where the view is rotated or something moves, fewer exposures are used. params may be NULL for
+ * the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is synchronous. The
+ * caller releases *image. Any thread.
  *
  * The estimate of a pixel is the sum of its values divided by the sum of their exposures, which has the least noise
  * that photons allow. Exposures fade out towards clipping. A single photo is returned as it is.
@@ -882,8 +882,8 @@ typedef int32_t (*luxfer_work_fn)(void *user);
  * A cancel request to this job also cancels the jobs that the function waits for, and makes the function's calls in
  * this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture.
  *
- * If the function returns an error, the job ends with this error. The message of the job is that of the last call that
- * failed on the job's thread, or of the last job that failed while the function waited for it. The error
+ * If the function returns an error, the job ends with this error. The message of the job is the message of the last
+ * call that failed on the job's thread, or of the last job that failed while the function waited for it. The error
  * LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that
  * still runs.
  * LUXFER_INVALID_ARGUMENT if work is NULL.

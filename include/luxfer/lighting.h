@@ -909,9 +909,9 @@ typedef struct luxfer_gonio_report {
  * is 0, where meshes may be NULL. The intensities account for the light that the meshes block, reflect and transmit.
  * Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
  *
- * The result is of absolute photometry, states no power and no colour, and its name is that of the first mesh with a
- * name. Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts
- * that emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
+ * The result is of absolute photometry, states no power and no colour, and has the name of the first mesh with a name.
+ * Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts that
+ * emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
  * intensities are right, but glare, near light and pictures of the luminaire are not.
  *
  * Intensities between the angles are interpolated linearly; the stated errors contain the noise of the paths only. The
@@ -1247,7 +1247,7 @@ typedef struct luxfer_pendant {
      * the camera.
      */
     double centre[3][3];
-    /** Median distance in pixels between the outline of the lamp and that of the fitted body. */
+    /** Median distance in pixels between the outline of the lamp and the outline of the fitted body. */
     double residual;
     /** Share of the outline that the photo's border cuts off, in [0, 0.3]. */
     double cut;
@@ -1317,7 +1317,7 @@ typedef struct luxfer_pendant {
  * Finds the bodies of hanging lamps. photo is linear RGB. mask has the photo's size and is above 0.5 on the bodies of
  * 1 to 16 lamps, without their suspensions. Each connected region of the mask is a lamp, except regions with less than
  * 2 % of the largest region's pixels, which are ignored. Lamps are numbered in the order of their topmost pixels. view
- * is a rectification of the photo whose job has succeeded; NULL: the camera is that of params. params may be NULL for
+ * is a rectification of the photo whose job has succeeded; NULL: params gives the camera. params may be NULL for
  * the defaults.
  *
  * suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
@@ -1342,13 +1342,13 @@ luxfer_status luxfer_pendants_find(luxfer_context *context,
                                    size_t *count);
 
 /**
- * Adds count meshes, 1 to 1024, to a scene. All have the same body, that of pendant, which luxfer_pendants_find has
- * found. places holds x, y and z in metres of count points; each point becomes the centre of the upper end of one
- * body. diameter is the largest diameter in metres, in [0.001, 1e4], or 0 for the diameter that pendant states. The
- * meshes share a new material. Its emission follows the colours of the photo along the height of the body. Where the
- * photo clips the lamp, this emission is too dark. luminance is the luminance in cd/m² of a surface that has the value
- * 1 in the photo, in [0, 1e9]. *first_mesh and *material receive the index of the first new mesh and that of the
- * material; each pointer may be NULL. Any thread.
+ * Adds count meshes, 1 to 1024, to a scene. All have the body of pendant, which luxfer_pendants_find has found. places
+ * holds x, y and z in metres of count points; each point becomes the centre of the upper end of one body. diameter is
+ * the largest diameter in metres, in [0.001, 1e4], or 0 for the diameter that pendant states. The meshes share a new
+ * material. Its emission follows the colours of the photo along the height of the body. Where the photo clips the
+ * lamp, this emission is too dark. luminance is the luminance in cd/m² of a surface that has the value 1 in the photo,
+ * in [0, 1e9]. *first_mesh and *material receive the index of the first new mesh and the index of the material; each
+ * pointer may be NULL. Any thread.
  * LUXFER_INVALID_ARGUMENT if diameter is 0 and the lamp has LUXFER_DOUBT_SIZE, or a value is out of range;
  * LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */

@@ -105,7 +105,7 @@ typedef struct luxfer_render_report {
     double relative_error;
     /**
      * Estimated error of the preview, remaining noise and bias together: root mean square over pixels and channels,
-     * divided by the image's mean. Compare it with the field error, which is that of the unfiltered image. Infinite
+     * divided by the image's mean. Compare it with the field error, the error of the unfiltered image. Infinite
      * while a pixel has fewer than four paths; 0 without a preview.
      */
     double preview_error;

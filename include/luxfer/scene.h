@@ -137,7 +137,7 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
  * luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material. On the
  * side towards the room, this copy emits texture * rgb in cd/m², each factor in [0, 1e15]. *mesh and *material receive
  * the indices of the new mesh and material; each pointer may be NULL. Any thread.
- * Errors: those of luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
+ * Errors: as for luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
  * LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */
 luxfer_status luxfer_scene_place_emission(luxfer_scene *scene,
@@ -221,7 +221,7 @@ luxfer_status luxfer_scene_load(luxfer_context *context,
 
 /**
  * Loads a scene from a GLB or glTF file in memory, which has size bytes and starts at data. If this file names other
- * files, they are read from the folder base_path (UTF-8); if base_path is NULL, the file must not name others.
+ * files, they are read from the folder base_path (UTF-8); if base_path is NULL, the file must not name other files.
  * Settings, ownership, threads and errors are as for luxfer_scene_load.
  */
 luxfer_status luxfer_scene_load_memory(luxfer_context *context,
@@ -609,7 +609,8 @@ typedef struct luxfer_distribution_report {
  * id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
  * releases *distribution. Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
- * LUXFER_UNSUPPORTED for photometry of type A, of type B in TM-33 files, in another file, or of no luminous quantity;
+ * LUXFER_UNSUPPORTED for photometry of type A, photometry of type B in TM-33 files, photometry that a container only
+ * names by an address, and photometry of no luminous quantity;
  * LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
  * extension.
  */

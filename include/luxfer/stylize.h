@@ -389,8 +389,8 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
                                        luxfer_guide_range range);
 
 /**
- * Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target those of the scene to
- * paint. Any thread.
+ * Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target the guides of the
+ * scene to paint. Any thread.
  *
  * The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure:
  * the 90th percentile of luminance over both scenes becomes 0.8. They have the names "full", "direct", "specular",
@@ -563,8 +563,8 @@ typedef struct luxfer_stylize_report {
 
 /**
  * Gets the image of the result that kind, a LUXFER_STYLIZE_IMAGE_ value, selects, for example the picture.
- * luxfer_stylize_update changes the picture and the sources only; the guide error remains that of the last full run.
- * The caller releases *image. Any thread.
+ * luxfer_stylize_update changes the picture and the sources only; the guide error stays as the last full run has left
+ * it. The caller releases *image. Any thread.
  * LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
  * level is finished.
  */

@@ -135,7 +135,8 @@ impl Distribution {
 /// id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
 /// releases *distribution. Any thread.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
-/// LUXFER_UNSUPPORTED for photometry of type A, of type B in TM-33 files, in another file, or of no luminous quantity;
+/// LUXFER_UNSUPPORTED for photometry of type A, photometry of type B in TM-33 files, photometry that a container only
+/// names by an address, and photometry of no luminous quantity;
 /// LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
 /// extension.
 #[unsafe(no_mangle)]

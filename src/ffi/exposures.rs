@@ -165,10 +165,10 @@ impl luxfer_merge_report {
 }
 
 /// Merges count photos of one view, in [1, 16], in any order, into one image. The photos have one size and one number
-/// of channels (1, 3 or 4; alpha is that of the reference). They may be shifted by whole pixels, as photos from the
-/// hand are; rotations and things that move cost only the use of other exposures in their places. params may be NULL
-/// for the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is synchronous.
-/// The caller releases *image. Any thread.
+/// of channels (1, 3 or 4; the result has the alpha of the reference). They may be shifted by whole pixels, as photos
+/// from the hand are. Where the view is rotated or something moves, fewer exposures are used. params may be NULL for
+/// the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is synchronous. The
+/// caller releases *image. Any thread.
 ///
 /// The estimate of a pixel is the sum of its values divided by the sum of their exposures, which has the least noise
 /// that photons allow. Exposures fade out towards clipping. A single photo is returned as it is.

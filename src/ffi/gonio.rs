@@ -77,9 +77,9 @@ versioned!(luxfer_gonio_report, [40], {
 /// is 0, where meshes may be NULL. The intensities account for the light that the meshes block, reflect and transmit.
 /// Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
 ///
-/// The result is of absolute photometry, states no power and no colour, and its name is that of the first mesh with a
-/// name. Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts
-/// that emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
+/// The result is of absolute photometry, states no power and no colour, and has the name of the first mesh with a name.
+/// Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts that
+/// emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
 /// intensities are right, but glare, near light and pictures of the luminaire are not.
 ///
 /// Intensities between the angles are interpolated linearly; the stated errors contain the noise of the paths only. The

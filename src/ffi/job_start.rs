@@ -34,8 +34,8 @@ unsafe impl Send for User {}
 /// A cancel request to this job also cancels the jobs that the function waits for, and makes the function's calls in
 /// this context end with LUXFER_CANCELLED. A call that loads a file then ends before the next mesh or picture.
 ///
-/// If the function returns an error, the job ends with this error. The message of the job is that of the last call that
-/// failed on the job's thread, or of the last job that failed while the function waited for it. The error
+/// If the function returns an error, the job ends with this error. The message of the job is the message of the last
+/// call that failed on the job's thread, or of the last job that failed while the function waited for it. The error
 /// LUXFER_NOT_READY is replaced by LUXFER_INVALID_OPERATION, because LUXFER_NOT_READY is the outcome of a job that
 /// still runs.
 /// LUXFER_INVALID_ARGUMENT if work is NULL.

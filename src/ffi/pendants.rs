@@ -240,7 +240,7 @@ pub struct luxfer_pendant {
     /// and upwards. The unit is the metre; with LUXFER_DOUBT_SIZE it is the distance of the first lamp's middle from
     /// the camera.
     pub centre: [[f64; 3]; 3],
-    /// Median distance in pixels between the outline of the lamp and that of the fitted body.
+    /// Median distance in pixels between the outline of the lamp and the outline of the fitted body.
     pub residual: f64,
     /// Share of the outline that the photo's border cuts off, in [0, 0.3].
     pub cut: f64,
@@ -364,7 +364,7 @@ fn doubts(found: &Pendants, lamp: &Lamp) -> u32 {
 /// Finds the bodies of hanging lamps. photo is linear RGB. mask has the photo's size and is above 0.5 on the bodies of
 /// 1 to 16 lamps, without their suspensions. Each connected region of the mask is a lamp, except regions with less than
 /// 2 % of the largest region's pixels, which are ignored. Lamps are numbered in the order of their topmost pixels. view
-/// is a rectification of the photo whose job has succeeded; NULL: the camera is that of params. params may be NULL for
+/// is a rectification of the photo whose job has succeeded; NULL: params gives the camera. params may be NULL for
 /// the defaults.
 ///
 /// suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
@@ -413,13 +413,13 @@ pub unsafe extern "C" fn luxfer_pendants_find(
     })
 }
 
-/// Adds count meshes, 1 to 1024, to a scene. All have the same body, that of pendant, which luxfer_pendants_find has
-/// found. places holds x, y and z in metres of count points; each point becomes the centre of the upper end of one
-/// body. diameter is the largest diameter in metres, in [0.001, 1e4], or 0 for the diameter that pendant states. The
-/// meshes share a new material. Its emission follows the colours of the photo along the height of the body. Where the
-/// photo clips the lamp, this emission is too dark. luminance is the luminance in cd/m² of a surface that has the value
-/// 1 in the photo, in [0, 1e9]. *first_mesh and *material receive the index of the first new mesh and that of the
-/// material; each pointer may be NULL. Any thread.
+/// Adds count meshes, 1 to 1024, to a scene. All have the body of pendant, which luxfer_pendants_find has found. places
+/// holds x, y and z in metres of count points; each point becomes the centre of the upper end of one body. diameter is
+/// the largest diameter in metres, in [0.001, 1e4], or 0 for the diameter that pendant states. The meshes share a new
+/// material. Its emission follows the colours of the photo along the height of the body. Where the photo clips the
+/// lamp, this emission is too dark. luminance is the luminance in cd/m² of a surface that has the value 1 in the photo,
+/// in [0, 1e9]. *first_mesh and *material receive the index of the first new mesh and the index of the material; each
+/// pointer may be NULL. Any thread.
 /// LUXFER_INVALID_ARGUMENT if diameter is 0 and the lamp has LUXFER_DOUBT_SIZE, or a value is out of range;
 /// LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 #[unsafe(no_mangle)]

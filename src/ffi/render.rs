@@ -149,7 +149,7 @@ pub struct luxfer_render_report {
     /// paths. With few paths this estimate is too high: with 8 paths by about a quarter.
     pub relative_error: f64,
     /// Estimated error of the preview, remaining noise and bias together: root mean square over pixels and channels,
-    /// divided by the image's mean. Compare it with the field error, which is that of the unfiltered image. Infinite
+    /// divided by the image's mean. Compare it with the field error, the error of the unfiltered image. Infinite
     /// while a pixel has fewer than four paths; 0 without a preview.
     pub preview_error: f64,
 }

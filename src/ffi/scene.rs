@@ -380,7 +380,7 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
 /// luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material. On the
 /// side towards the room, this copy emits texture * rgb in cd/m², each factor in [0, 1e15]. *mesh and *material receive
 /// the indices of the new mesh and material; each pointer may be NULL. Any thread.
-/// Errors: those of luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
+/// Errors: as for luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
 /// LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]

@@ -113,7 +113,7 @@ pub unsafe extern "C" fn luxfer_scene_load(
 }
 
 /// Loads a scene from a GLB or glTF file in memory, which has size bytes and starts at data. If this file names other
-/// files, they are read from the folder base_path (UTF-8); if base_path is NULL, the file must not name others.
+/// files, they are read from the folder base_path (UTF-8); if base_path is NULL, the file must not name other files.
 /// Settings, ownership, threads and errors are as for luxfer_scene_load.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_load_memory(

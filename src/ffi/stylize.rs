@@ -200,8 +200,8 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
     })
 }
 
-/// Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target those of the scene to
-/// paint. Any thread.
+/// Adds the rendered guides of two scenes: source holds the guides of the exemplar scene, target the guides of the
+/// scene to paint. Any thread.
 ///
 /// The call adds the five guides of light, from LUXFER_GUIDES_FULL to LUXFER_GUIDES_TWO_BOUNCES, at a common exposure:
 /// the 90th percentile of luminance over both scenes becomes 0.8. They have the names "full", "direct", "specular",

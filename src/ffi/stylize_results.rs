@@ -116,8 +116,8 @@ impl HasWarnings for luxfer_stylize {
 }
 
 /// Gets the image of the result that kind, a LUXFER_STYLIZE_IMAGE_ value, selects, for example the picture.
-/// luxfer_stylize_update changes the picture and the sources only; the guide error remains that of the last full run.
-/// The caller releases *image. Any thread.
+/// luxfer_stylize_update changes the picture and the sources only; the guide error stays as the last full run has left
+/// it. The caller releases *image. Any thread.
 /// LUXFER_NOT_READY before the first level of a job is finished; for images other than the picture, before the last
 /// level is finished.
 #[unsafe(no_mangle)]

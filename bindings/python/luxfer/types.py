@@ -1557,8 +1557,8 @@ class RenderReport:
     than two paths. With few paths this estimate is too high: with 8 paths by about a quarter."""
     preview_error: float
     """Estimated error of the preview, remaining noise and bias together: root mean square over pixels and
-    channels, divided by the image's mean. Compare it with the field error, which is that of the unfiltered
-    image. Infinite while a pixel has fewer than four paths; 0 without a preview."""
+    channels, divided by the image's mean. Compare it with the field error, the error of the unfiltered image.
+    Infinite while a pixel has fewer than four paths; 0 without a preview."""
 
 
 class RectifyParams(TypedDict, total=False):
@@ -2542,7 +2542,7 @@ class Pendant:
     and 2, and upwards. The unit is the metre; with Doubt.SIZE it is the distance of the first lamp's middle
     from the camera."""
     residual: float
-    """Median distance in pixels between the outline of the lamp and that of the fitted body."""
+    """Median distance in pixels between the outline of the lamp and the outline of the fitted body."""
     cut: float
     """Share of the outline that the photo's border cuts off, in [0, 0.3]."""
     clipped: float
