@@ -14,7 +14,8 @@
 # make clean  removes all built files
 #
 # make install PREFIX=/usr/local DESTDIR=, make uninstall, make dist and more: bindings/install.mk
-# make dist-all, make dist-check: packages for Linux and Windows, and what runs of them here: bindings/dist.mk
+# make dist-all, make dist-check: packages for Linux and Windows, and checks of the packages that run here:
+# bindings/dist.mk
 
 CARGO   ?= cargo
 CC      ?= cc

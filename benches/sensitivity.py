@@ -107,7 +107,7 @@ def replace(files: dict[str, str], constant: str, measured: bool = True) -> None
 
 
 def code_of(content: bytes) -> list[bytes]:
-    """The lines of a file without those that are comments of Rust."""
+    """The lines of a file without comment lines of Rust."""
     return [line for line in content.split(b"\n") if not line.lstrip().startswith(b"//")]
 
 
@@ -170,7 +170,7 @@ def figures(lines: list[str]) -> dict[str, str]:
 
 
 def settings(constant: str, factors: list[str]) -> list[tuple[str, str]]:
-    """The runs of a constant: what the table shows, and the entry of the environment variable."""
+    """The runs of a constant: the entry of the table, and the entry of the environment variable."""
     name, is_given, values = constant.partition("=")
     if is_given:
         return [(f"= {value}", f"{name}={value}") for value in values.split(",")]

@@ -17,7 +17,7 @@ STROKES, MASKS, TEXTURE, LAMPS = "Luxfer strokes", "Luxfer masks", "Luxfer light
 #: For each kind of stroke, its colour, and its name and description in the interface.
 COLOURS = {
     "PLANE": ((0.0, 1.0, 0.0), "Plane", "The plane that carries the lights"),
-    "NOT_PLANE": ((1.0, 0.0, 0.0), "Not Plane", "What is not on that plane"),
+    "NOT_PLANE": ((1.0, 0.0, 0.0), "Not Plane", "Everything that is not on that plane"),
     "LIGHT": ((1.0, 1.0, 0.0), "Light", "Lights in the plane"),
     "NOT_LIGHT": ((0.0, 0.0, 1.0), "Not Light", "The plane beside the lights"),
 }

@@ -25,7 +25,7 @@ constexpr bool is_compatible(std::uint32_t library, std::uint32_t header) noexce
 
 namespace detail {
 
-/// Owns one reference to a C object, or none: copying retains the object, and the destructor releases it.
+/// Owns one reference to a C object, or is empty: copying retains the object, and the destructor releases it.
 template <class C>
 class Reference {
 public:
@@ -236,7 +236,7 @@ public:
         return value<luxfer_photo_metadata>(luxfer_image_get_metadata);
     }
 
-    /// The merged image of several exposures, and what the merge found.
+    /// The merged image of several exposures, and the report of the merge.
     struct Merged;
 
     /// Merges photos of one view with different exposures into one image; see luxfer_image_merge_exposures.

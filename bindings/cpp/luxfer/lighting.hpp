@@ -99,7 +99,7 @@ public:
     }
 
     /// Computes the light that the target receives from a placed texture. The matrix placement (row by row) maps the
-    /// texture coordinates of the surface to those of the texture.
+    /// texture coordinates of the surface to texture coordinates of the texture.
     Result<luxfer_importance_report> respond(const Image &texture, Numbers<9> placement) const {
         return value<luxfer_importance_report>(luxfer_importance_respond, texture.get(), placement.data());
     }
@@ -174,7 +174,7 @@ struct MeasuredDistribution {
     luxfer_gonio_report report = {};
 };
 
-/// Measures the distribution of meshes of a scene, given by their indices; of all meshes if none is given.
+/// Measures the distribution of meshes of a scene, given by their indices; of all meshes if no indices are given.
 inline Result<MeasuredDistribution> measure_distribution(const Scene &scene, Span<const std::uint32_t> meshes = {},
                                                          const luxfer_gonio_params &params = GonioParams()) {
     luxfer_distribution *made = nullptr;

@@ -89,7 +89,7 @@ public:
 
     Result<> set_photo(const Image &photo) const { return call(luxfer_features_set_photo, photo.get()); }
 
-    /// Sets the depth map; empty means none.
+    /// Sets the depth map; empty removes it.
     Result<> set_depth(const Image &depth, luxfer_depth_kind kind = LUXFER_DEPTH_ALONG_Z) const {
         return call(luxfer_features_set_depth, depth.get(), kind);
     }
@@ -103,7 +103,8 @@ public:
     /// Takes the current lines and camera of a Rectify; empty means no lines.
     Result<> set_view(const Rectify &rectify) const { return call(luxfer_features_set_view, rectify.get()); }
 
-    /// Sets the strokes on the photo; the fit of the room layout uses those for the plane. Empty means none.
+    /// Sets the strokes on the photo; the fit of the room layout uses the strokes for the plane. Empty removes all
+    /// strokes.
     Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_features_set_strokes, strokes.get()); }
 
     Result<Job> start(const luxfer_features_params &params = FeaturesParams()) const {
@@ -131,7 +132,7 @@ public:
     /// Restricts the segmentation to a mask; empty means the whole image.
     Result<> set_region(const Image &region) const { return call(luxfer_segment_set_region, region.get()); }
 
-    /// Sets the strokes and selects those of phase, a LUXFER_PHASE_ value; empty means none.
+    /// Sets the strokes for phase, a LUXFER_PHASE_ value; empty removes all strokes.
     Result<> set_strokes(luxfer_phase phase, const Strokes &strokes) const {
         return call(luxfer_segment_set_strokes, phase, strokes.get());
     }

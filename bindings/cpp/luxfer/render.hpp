@@ -74,7 +74,8 @@ public:
 
     Result<luxfer_render_report> report() const { return value<luxfer_render_report>(luxfer_render_get_report); }
 
-    /// Describes what the rendering skips, one sentence per line, with the number of lamps that cannot be reached.
+    /// Describes the parts of the scene that the rendering skips, one sentence per line, with the number of lamps that
+    /// cannot be reached.
     Result<std::string> requirements_text() const { return text(luxfer_render_get_requirements_text); }
 
     Result<std::uint32_t> layer_count() const { return value<std::uint32_t>(luxfer_render_get_layer_count); }

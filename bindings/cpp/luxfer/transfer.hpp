@@ -24,7 +24,7 @@ public:
 
     Result<> set_photo(const Image &photo) const { return call(luxfer_transfer_set_photo, photo.get()); }
 
-    /// Sets the depth map; empty means none.
+    /// Sets the depth map; empty removes it.
     Result<> set_depth(const Image &depth, luxfer_depth_kind kind = LUXFER_DEPTH_ALONG_Z) const {
         return call(luxfer_transfer_set_depth, depth.get(), kind);
     }
@@ -41,7 +41,7 @@ public:
     Result<> set_camera(const luxfer_camera_params &camera) const { return call(luxfer_transfer_set_camera, &camera); }
     Result<> clear_camera() const { return call(luxfer_transfer_set_camera, nullptr); }
 
-    /// Sets the strokes on the photo; empty means none.
+    /// Sets the strokes on the photo; empty removes all strokes.
     Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_transfer_set_strokes, strokes.get()); }
 
     /// Sets rectangles of the surface that stay without lamps: u0, v0, u1 and v1 of each, in metres. They replace

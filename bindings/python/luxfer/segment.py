@@ -45,7 +45,7 @@ class Segment(StageBase):
         self._call("set_region", None if region is None else image_of(self._context, region))
 
     def set_strokes(self, phase: Phase | str, strokes: Strokes | ImageLike | None) -> None:
-        """Sets the strokes and selects those for the "plane" or for the "lights". A drawing is converted by
+        """Sets the strokes for the mask of the "plane" or of the "lights". A drawing is converted by
         Strokes.from_image. None means no strokes."""
         set_strokes(self, strokes, _params.member(Phase, phase))
 
