@@ -37,7 +37,8 @@ class SurfaceCandidate:
     level_area: float
     """Area in m² of the triangles that are inclined by less than 15 degrees."""
     height: float
-    """Mean height in metres of these nearly horizontal triangles, or of all triangles if there are none."""
+    """Mean height in metres of these nearly horizontal triangles, or of all triangles if no triangle is nearly
+    horizontal."""
     low: float
     """Lowest point, in metres."""
     high: float

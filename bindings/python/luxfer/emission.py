@@ -116,7 +116,7 @@ class Emission(StageBase):
 
     @property
     def warnings(self) -> list[StageWarning]:
-        """Reasons to doubt the texture; a composition has none."""
+        """Reasons to doubt the texture; for a composition the list is empty."""
         return warnings_of(self)
 
     @property

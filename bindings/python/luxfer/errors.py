@@ -49,7 +49,7 @@ class FileError(Error, OSError):
 
 
 class FormatError(Error, ValueError):
-    """A file is truncated, corrupt, or not what it claims to be."""
+    """A file is truncated or corrupt, or does not have the format that it claims."""
 
     status = Status.FORMAT
 

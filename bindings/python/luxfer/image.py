@@ -162,8 +162,8 @@ def merge_exposures(
     context: Context, photos: Sequence[ImageLike], **params: Unpack[MergeParams]
 ) -> tuple[Image, MergeReport]:
     """Merges photos of one view with different exposures into one image, whose lamps are not clipped. Returns the image
-    and what the merge found; the arrays of the report have an element for each photo. `exposures` states the exposure
-    of each photo, in any unit; without it, the metadata and the pixels do.
+    and the report of the merge, whose arrays have an element for each photo. `exposures` states the exposure of each
+    photo, in any unit; without it, the exposures come from the metadata and the pixels.
 
     >>> photo = np.random.default_rng(1).uniform(0.01, 0.9, (64, 64, 1)).repeat(3, 2).astype(np.float32)
     >>> merged, report = merge_exposures(context, [photo, photo / 4], exposures=[4, 1])

@@ -56,7 +56,7 @@ class Importance(StageBase):
 
     def respond(self, texture: ImageLike, placement: Sequence[float] | None = None) -> ImportanceReport:
         """Computes the light that the target receives from a texture in cd/m². The matrix placement (nine numbers, row
-        by row) maps the texture coordinates of the surface to those of the texture."""
+        by row) maps texture coordinates of the surface to texture coordinates of the texture."""
         image = image_of(self._context, texture)
         out = self._read("respond", _abi.luxfer_importance_report, image, _nine(placement))
         return cast(ImportanceReport, out)

@@ -96,14 +96,14 @@ class Render(StageBase):
         return cast("RenderPart", _params.settings(part))
 
     def start_part(self, path: str | os.PathLike[str], part: RenderPart, **params: Unpack[RenderParams]) -> Job[Render]:
-        """Starts a job that renders a part into a file; afterwards the images are those of the part."""
+        """Starts a job that renders a part into a file; afterwards the images show this part."""
         settings = _params.fill(_abi.luxfer_render_params, params, [])
         which = _params.fill(_abi.luxfer_render_part, part, [])
         return self._job("start_part", settings, which, _params.text(os.fspath(path), "path"))
 
     def start_merge(self, paths: Iterable[str | os.PathLike[str]], **params: Unpack[RenderParams]) -> Job[Render]:
         """Starts a job that merges the files of all parts, in any order, into the whole rendering. Scene, camera,
-        layers and settings must be those of the parts."""
+        layers and settings must equal those of the parts."""
         self._call("clear_parts")
         for path in paths:
             self._call("add_part", _params.text(os.fspath(path), "path"))
@@ -116,7 +116,7 @@ class Render(StageBase):
 
     @property
     def layers(self) -> dict[str, Image]:
-        """The current layers by name; those of the expressions come first."""
+        """The current layers by name; the layers of the expressions come first."""
         count = ctypes.c_uint32()
         self._call("get_layer_count", count)
         names = [self._get_text("get_layer_name", i) for i in range(count.value)]
@@ -132,7 +132,8 @@ class Render(StageBase):
         self._call("write_exr", _params.text(os.fspath(path), "path"))
 
     def requirements_text(self) -> str:
-        """Describes what the rendering skips, one sentence per line, with the number of unreachable lamps."""
+        """Describes the parts of the scene that the rendering skips, one sentence per line, with the number of
+        unreachable lamps."""
         return self._get_text("get_requirements_text")
 
     @property

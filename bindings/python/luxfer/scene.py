@@ -41,7 +41,7 @@ if TYPE_CHECKING:
 #: The entry that intersect() returns for each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
 HIT = np.dtype([("t", "f4"), ("mesh", "u4"), ("triangle", "u4"), ("u", "f4"), ("v", "f4")])
 
-#: The entry that glare() returns for each observer; ugr is -inf without a rated light in view.
+#: The entry that glare() returns for each observer; ugr is -inf if no rated light is in view.
 GLARE = np.dtype(
     [(name, "f8") for name in ("ugr", "background", "background_error", "unrated_lux", "solid_angle")]
     + [("sources", "u4"), ("outside_range", "u4")]

@@ -1,4 +1,4 @@
-"""Strokes: what a user paints on a photo to show where the plane and the lights are."""
+"""Strokes that a user paints on a photo to show where the plane and the lights are."""
 
 from __future__ import annotations
 

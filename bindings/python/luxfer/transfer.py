@@ -51,7 +51,7 @@ class Transfer(StageBase):
         if scene is not None and surface is not None:
             self.set_scene(scene, surface)
         elif not (scene is None and surface is None):
-            raise TypeError("scene and surface, the name of what receives the lights, go together")
+            raise TypeError("scene and surface, the name of the object or material that receives the lights, go together")
 
     # -- inputs
 

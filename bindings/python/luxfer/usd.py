@@ -14,8 +14,7 @@ load() reads the composed stage at the default time and converts it to metres an
 
 load() ignores invisible prims, guides and proxies, curves, points, volumes, instances of a PointInstancer, skinning,
 subdivision, other shaders, other textures, UsdTransform2d, the images of domes, other lights, light linking. save()
-leaves out punctual lights and the environment, all textures but those of base colour and emission, and texture
-transforms.
+leaves out punctual lights and the environment, all textures except of base colour and emission, and texture transforms.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
 
     from .context import Context
 
-#: Wrap modes of textures: the names of USD and those of luxfer.
+#: Wrap modes of textures: the names of USD and of luxfer.
 WRAPS = {"repeat": "repeat", "mirror": "mirror", "clamp": "clamp", "black": "clamp", "useMetadata": "repeat"}
 
 
