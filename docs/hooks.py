@@ -97,10 +97,8 @@ def value(kind: str, words: list[str], path: str, files) -> str:
     if kind in ("settings", "fields"):
         if words[0] not in header.fields:
             raise PluginError(f"{path}: luxfer.h has no struct {words[0]}")
-        table = header.table(words[0], path, ("struct_size", "reserved"))
-        if kind == "fields":
-            return table
-        return f"Fields of `{words[0]}`, with the defaults that `{words[0]}_init` sets:\n\n{table}"
+        head = f"Fields of `{words[0]}`, with the defaults that `{words[0]}_init` sets:\n\n" if kind == "settings" else ""
+        return head + header.table(words[0], path, ("struct_size", "reserved"))
     if kind == "limits":
         return limits(words[0], path)
     if kind == "constant":
