@@ -253,6 +253,8 @@ fn files_of_a_module_do_not_use_each_other_in_circles() {
     let sources: Vec<(String, String)> = sources().into_iter().map(|(path, text)| (relative(path), text)).collect();
     let found = circles::circles(&sources);
     assert!(found.is_empty(), "modules that use each other in a circle: {found:?}");
+    let found = circles::folder_circles(&sources);
+    assert!(found.is_empty(), "folders that use each other in a circle: {found:#?}");
     // Test the check itself: two files that use each other form a circle, and a re-export does not count as a use.
     let file = |name: &str, text: &str| (name.to_string(), text.to_string());
     let all = [
@@ -262,4 +264,12 @@ fn files_of_a_module_do_not_use_each_other_in_circles() {
     ];
     assert_eq!(circles::circles(&all), [["a::b", "a::c"]]);
     assert_eq!(circles::circles(&all[..2]), [[""; 0]; 0]);
+    // Two folders whose files use no circle, but that use each other.
+    let all = [
+        file("a/b/mod.rs", "pub mod d; use super::c::C;"),
+        file("a/b/d.rs", "pub struct D;"),
+        file("a/c.rs", "use super::b::d::D; pub struct C;"),
+    ];
+    assert_eq!(circles::circles(&all), [[""; 0]; 0]);
+    assert_eq!(circles::folder_circles(&all), [["a::b", "a::c"]]);
 }

@@ -9,7 +9,7 @@
 
 use super::file_colour::{Chromaticities, Space};
 use super::limits::check_size;
-use super::photo::{Orientation, Upright};
+use super::orientation::{Orientation, Upright};
 use super::{Image, memory, try_vec};
 use crate::error::{Error, ErrorKind, Result};
 use glam::{DMat3, DVec3};

@@ -5,8 +5,8 @@
 //! the near field is that of a uniform surface. Faces reflect no light: the measured intensity contains all light that
 //! leaves them in a dark room.
 
+use super::bounds::Bounds;
 use super::facet;
-use super::light::bounds::Bounds;
 use super::measured::Measured;
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};

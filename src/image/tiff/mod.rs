@@ -17,7 +17,7 @@ mod tests;
 
 use super::colour::{srgb_to_linear, srgb8_table};
 use super::limits::Encoding;
-use super::photo::{Orientation, Upright};
+use super::orientation::{Orientation, Upright};
 use super::{Image, memory, try_vec};
 use crate::error::{Error, Result};
 use chunk::{sample, undo_predictor, unpack};

@@ -17,11 +17,11 @@ mod face_patches;
 mod polygon;
 mod tiles;
 
-pub use emitter::{Emitter, mean_channel};
+pub use emitter::Emitter;
 
-use super::contribution::LightSource;
+use super::bounds::Bounds;
+use super::contribution::{LightSource, mean_channel};
 use super::facet::Facet;
-use super::light::bounds::Bounds;
 use super::luminaires::Source;
 use crate::error::Result;
 use crate::image::{reserve_capacity, try_collect, try_vec, try_with_capacity};

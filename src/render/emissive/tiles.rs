@@ -7,7 +7,7 @@
 
 use super::emitter::Emitter;
 use super::polygon::{Overlap, Polygon, Rectangle};
-use crate::render::light::bounds::Bounds;
+use crate::render::bounds::Bounds;
 use crate::scene::Texture;
 use glam::{DMat2, DVec2, Vec2};
 

@@ -1,9 +1,9 @@
 //! Punctual lights prepared for light sampling: points, spots, directional lights (`KHR_lights_punctual`) and measured
 //! luminaires.
 
-use super::bounds::Bounds;
 use crate::photometry::Luminaire;
-use crate::render::emissive::mean_channel;
+use crate::render::bounds::Bounds;
+use crate::render::contribution::mean_channel;
 use crate::render::measured::Measured;
 use crate::scene::PunctualLight;
 use glam::{DVec3, Vec3};

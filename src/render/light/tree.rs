@@ -7,9 +7,9 @@
 //! surface area, because it is positive also for lamps in one line. The length of the mean emission direction replaces
 //! the solid angle.
 
-use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
+use crate::render::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use glam::{Vec3, Vec3A};
 
 /// Number of bins per axis; their borders are the candidate splits. [convention]
