@@ -1,5 +1,6 @@
 //! Checks rules of the source code: which module may use which, which files may contain `unsafe`, which macros are
-//! banned, how long files and comment lines may be, and that float constants state their origin.
+//! banned, how long files and comment lines may be, that float constants state their origin, and that the name of a
+//! type has one meaning in its module.
 
 #[path = "layering/circles.rs"]
 mod circles;
@@ -7,6 +8,8 @@ mod circles;
 mod comments;
 #[path = "layering/constants.rs"]
 mod constants;
+#[path = "layering/names.rs"]
+mod names;
 
 use std::path::{Path, PathBuf};
 
@@ -244,6 +247,22 @@ fn the_check_of_constants_sees_every_kind() {
     }
     let judged = constants::origins("/// [judged on 3\n/// photos] [judged on 1 scene] [judged on rooms]", true);
     assert_eq!((judged.judged, judged.wrong.len()), (3, 1));
+}
+
+#[test]
+fn the_name_of_a_type_has_one_meaning_in_a_module() {
+    let library = sources().into_iter().filter(|(path, _)| !is_test(path));
+    let library: Vec<(String, String)> = library.map(|(path, text)| (part(&path), text)).collect();
+    let found = names::with_two_meanings(&library);
+    assert!(found.is_empty(), "names that a module gives to two types: {found:?}");
+    // Test the check itself: types of unit tests and of other modules do not count.
+    let file = |part: &str, text: &str| (part.to_string(), text.to_string());
+    let all = [
+        file("a", "pub struct B<'a> {}\npub(super) type C = B;\nimpl D for B {\n    type Item = B;\n}\nstruct Params;"),
+        file("a", "enum C { B }\npub struct Params;\n#[cfg(test)]\nmod tests {\nstruct B;\n}"),
+        file("b", "struct B;"),
+    ];
+    assert_eq!(names::with_two_meanings(&all), ["a::C"]);
 }
 
 #[test]

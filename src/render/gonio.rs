@@ -141,12 +141,12 @@ fn local([c, gamma]: [f64; 2]) -> DVec3 {
 
 /// A box in the coordinates of the luminaire: along C = 0, C = 90 and the axis, from the origin of the world.
 #[derive(Clone, Copy)]
-struct Extent {
+struct LuminaireBox {
     low: DVec3,
     high: DVec3,
 }
 
-impl Extent {
+impl LuminaireBox {
     fn of(points: impl Iterator<Item = DVec3>) -> Self {
         let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
         points.fold(none, |e, p| Self { low: e.low.min(p), high: e.high.max(p) })
@@ -167,10 +167,10 @@ struct Goniometer<'a> {
     params: &'a Params,
     /// Unit directions in the scene: of C = 0°, of C = 90° and of the axis (γ = 0°).
     frame: [DVec3; 3],
-    extent: Extent,
+    extent: LuminaireBox,
     opening: Opening,
     /// The box around the parts that emit.
-    emitting: Extent,
+    emitting: LuminaireBox,
 }
 
 /// The light in one direction.
@@ -188,12 +188,13 @@ impl<'a> Goniometer<'a> {
         let meshes = &world.scene().meshes;
         let corners =
             meshes.iter().flat_map(|mesh| mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize]));
-        let extent = Extent::of(corners.map(|p| in_frame(world.from_scene(p))));
+        let extent = LuminaireBox::of(corners.map(|p| in_frame(world.from_scene(p))));
         // The boxes of the pieces leave out the dark texels, but only the corners know the directions of the frame.
         let lights = world.lights();
-        let of_corners = Extent::of(lights.emitters.emitters.iter().flat_map(|e| e.corners).map(in_frame));
-        let of_pieces = Extent::of(lights.piece_corners().map(in_frame));
-        let emitting = Extent { low: of_corners.low.max(of_pieces.low), high: of_corners.high.min(of_pieces.high) };
+        let of_corners = LuminaireBox::of(lights.emitters.emitters.iter().flat_map(|e| e.corners).map(in_frame));
+        let of_pieces = LuminaireBox::of(lights.piece_corners().map(in_frame));
+        let emitting =
+            LuminaireBox { low: of_corners.low.max(of_pieces.low), high: of_corners.high.min(of_pieces.high) };
         match Opening::new(extent.size().to_array(), None) {
             Some(opening) if lights.pieces() > 0 => Ok(Self { world, params, frame, extent, opening, emitting }),
             _ => Err(Error::degenerate("none of the meshes emits light; choose the meshes of a lamp")),
