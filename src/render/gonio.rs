@@ -69,7 +69,7 @@ pub struct Output {
 const BATCHES: usize = 16;
 /// The shape of the luminous opening is chosen by the directions in which at least this share of the largest luminous
 /// area is seen. In other directions, a shade or the back of a flat lamp hides it. [convention]
-const MIN_SEEN: f64 = 0.9;
+const MIN_LUMINOUS_SHARE: f64 = 0.9;
 /// Sides of the box around the emitting parts that are shorter than this share of its longest side count as 0.
 /// [rounding]
 const FLAT: f64 = 1e-5;
@@ -211,7 +211,7 @@ impl<'a> Goniometer<'a> {
         let faces = self.opening.faces(direction);
         let areas: Vec<f64> = faces.iter().map(|face| face.projected_area(direction)).collect();
         let area: f64 = areas.iter().sum();
-        let reach = direction * self.extent.size().length();
+        let offset = direction * self.extent.size().length();
         let per_batch = self.params.samples.div_ceil(BATCHES as u32);
         let (mut batches, mut luminous) = ([0.0; BATCHES], 0u64);
         for (batch, estimate) in batches.iter_mut().enumerate().filter(|_| area > 0.0) {
@@ -230,7 +230,7 @@ impl<'a> Goniometer<'a> {
                     target < 0.0
                 });
                 let face = &faces[face.unwrap_or(faces.len() - 1)];
-                let start = face.point([0, 1].map(|k| place.fine(k))) + self.extent.centre() + reach;
+                let start = face.point([0, 1].map(|k| place.fine(k))) + self.extent.centre() + offset;
                 let ray = Ray::new(self.in_world(start).as_vec3(), -self.in_world(direction).as_vec3());
                 let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: None };
                 observer.scattered = false;
@@ -293,7 +293,10 @@ impl<'a> Goniometer<'a> {
         let largest = measured.iter().map(|found| found.luminous_area).fold(0.0, f64::max);
         let misfit = |shape: &[f64; 3]| -> f64 {
             let Some(opening) = Opening::new(*shape, None) else { return f64::INFINITY };
-            let seen = directions.iter().zip(measured).filter(|(_, found)| found.luminous_area >= MIN_SEEN * largest);
+            let seen = directions
+                .iter()
+                .zip(measured)
+                .filter(|(_, found)| found.luminous_area >= MIN_LUMINOUS_SHARE * largest);
             seen.map(|(angles, found)| (opening.projected_area(local(*angles)) - found.luminous_area).powi(2)).sum()
         };
         let best = shapes.iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b)));

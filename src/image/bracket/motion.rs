@@ -89,13 +89,13 @@ impl FramePair<'_> {
             return [0.0; 3];
         }
         let light = if is_clipped { predicted } else { (s + l) * self.ratio / (1.0 + self.ratio) };
-        let [deviation, scatter] = self.noise.at(light);
+        let [deviation, spread] = self.noise.at(light);
         let difference =
             if is_clipped { PREDICTED * self.long.clip - self.ratio * s_peak } else { l - predicted - deviation };
         let allowed = self.misalignment * self.steps(x, y, [s, l])
             + half_code(self.long, l)
             + self.ratio * half_code(self.short, s);
-        [difference, allowed, scatter * scatter]
+        [difference, allowed, spread * spread]
     }
 
     /// Measures the misalignment: the median difference at edges, relative to the steps of the light there.
