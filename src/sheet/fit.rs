@@ -13,7 +13,7 @@ use glam::DVec2;
 const MIN_MARKS: usize = 6;
 /// Maximum distance between a candidate and the position that a map predicts for its mark, as a share of `extent` (the
 /// larger distance between opposite corner marks). The first tolerance is for the map through four candidates, the
-/// final one for the least-squares map. No figure changes between half and twice either value. [bench constants:sheet]
+/// final one for the least-squares map. [bench constants:sheet]
 const FIRST_TOLERANCE: f64 = 0.02;
 const FINAL_TOLERANCE: f64 = 0.004;
 
