@@ -5,7 +5,7 @@
 //! the near field is that of a uniform surface. Faces reflect no light: the measured intensity contains all light that
 //! leaves them in a dark room.
 
-use super::bounds::Bounds;
+use super::bounds::{Bounds, CONE_MARGIN};
 use super::facet;
 use super::measured::Measured;
 use crate::error::Result;
@@ -263,8 +263,7 @@ impl IntensityBound {
             _ => 90.0,
         };
         if is_flat && (luminance * area > MAX_COSINE_EXCESS * peak || widest < NARROW) {
-            // Widen the cone slightly, to allow for rounding.
-            Self::Cone { peak, angle: widest.to_radians() + 0.01 }
+            Self::Cone { peak, angle: widest.to_radians() + CONE_MARGIN }
         } else {
             Self::Cosine(luminance * area)
         }

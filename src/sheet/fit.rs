@@ -17,6 +17,12 @@ const MIN_MARKS: usize = 6;
 const FIRST_TOLERANCE: f64 = 0.02;
 const FINAL_TOLERANCE: f64 = 0.004;
 
+/// Half-side of the window in which a mark is refined. `WINDOW`: as a share of the mark's radius; the choice is free up
+/// to 1/√2 = 0.7, from which on the corners of the window leave the mark. `MIN_WINDOW`: its minimum in pixels.
+/// [convention]
+const WINDOW: f64 = 0.6;
+const MIN_WINDOW: f64 = 2.0;
+
 pub struct Fit {
     /// Maps pixels of the page to pixels of the photo.
     pub to_photo: Homography,
@@ -38,7 +44,7 @@ pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], job: Job) -> Res
         let centre = page.marks[mark];
         let length_in_photo =
             |step: DVec2| found.map.apply(centre + step * page.radius).distance(found.map.apply(centre));
-        let radius = (0.6 * length_in_photo(DVec2::X).min(length_in_photo(DVec2::Y))).max(2.0);
+        let radius = (WINDOW * length_in_photo(DVec2::X).min(length_in_photo(DVec2::Y))).max(MIN_WINDOW);
         if let Some(at) = refine(grey, at, radius) {
             pairs.push((mark, at));
         }

@@ -2,7 +2,7 @@
 //! luminaires.
 
 use crate::photometry::Luminaire;
-use crate::render::bounds::Bounds;
+use crate::render::bounds::{Bounds, CONE_MARGIN};
 use crate::render::contribution::mean_channel;
 use crate::render::measured::Measured;
 use crate::scene::PunctualLight;
@@ -79,15 +79,15 @@ impl Punctual {
             }
             PunctualLight::Spot { position, direction, intensity, outer_angle, .. } => {
                 let axis = direction.normalize_or(Vec3::Y);
-                // Widen the cone slightly, to allow for rounding.
-                Bounds::of_cone(position, axis, outer_angle + 0.01, mean_channel(intensity.max(Vec3::ZERO)))
+                let angle = outer_angle + CONE_MARGIN as f32;
+                Bounds::of_cone(position, axis, angle, mean_channel(intensity.max(Vec3::ZERO)))
             }
             PunctualLight::Directional { .. } => return None,
             PunctualLight::Luminaire { position, axis, colour, distribution, .. } => {
                 let luminaire = &*distributions[distribution];
-                // Assume full intensity up to the widest angle at which the luminaire emits, plus a margin for
-                // rounding. The bounds have full intensity up to `cone_angle` - 90°, so add 90°.
-                let cone_angle = luminaire.max_gamma().to_radians() as f32 + FRAC_PI_2 + 0.01;
+                // Assume full intensity up to the widest angle at which the luminaire emits. The bounds have full
+                // intensity up to `cone_angle` - 90°, so add 90°.
+                let cone_angle = luminaire.max_gamma().to_radians() as f32 + FRAC_PI_2 + CONE_MARGIN as f32;
                 let peak = luminaire.candela.iter().copied().fold(0.0, f64::max) as f32;
                 Bounds::of_cone(position, axis, cone_angle, peak * mean_channel(colour.max(Vec3::ZERO)))
             }
