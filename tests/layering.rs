@@ -266,6 +266,25 @@ fn the_name_of_a_type_has_one_meaning_in_a_module() {
 }
 
 #[test]
+fn the_glossary_lists_names_of_types_in_several_modules() {
+    let library = sources().into_iter().filter(|(path, _)| !is_test(path));
+    let library: Vec<(String, String)> = library.map(|(path, text)| (part(&path), text)).collect();
+    let glossary = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/glossary.md")).unwrap();
+    let listed = names::listed(&glossary, "## Names with a meaning of their own in each module");
+    assert_eq!(names::of_several_modules(&library), listed, "left: types of src; right: rows of docs/glossary.md");
+    // Test the check itself: private types, the same module and `ffi` do not count.
+    let file = |part: &str, text: &str| (part.to_string(), text.to_string());
+    let all = [
+        file("a", "pub struct B;\npub enum C {}\nstruct D;\npub struct E;\npub struct Params;"),
+        file("a", "pub trait F {}\npub struct E;"),
+        file("b", "pub(super) type B = u8;\npub struct D;\npub struct Params;"),
+        file("ffi", "pub struct C;"),
+    ];
+    assert_eq!(names::of_several_modules(&all), ["B"]);
+    assert_eq!(names::listed("## H\n\n| name | m |\n|---|---|\n| B | b |\n\n## I\n| C | c |\n", "## H"), ["B"]);
+}
+
+#[test]
 fn files_of_a_module_do_not_use_each_other_in_circles() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let relative = |path: PathBuf| path.strip_prefix(&src).unwrap().to_string_lossy().into_owned();

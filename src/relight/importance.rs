@@ -15,7 +15,7 @@ use super::params::Params;
 use super::responses::{Estimate, Goal};
 use super::sided::Constraint;
 use super::solution::Solution;
-use super::solve::{self, Measurements};
+use super::solve::{self, BatchMeasurements};
 use super::target::Sampler;
 use super::transport::{Batches, Stop};
 use crate::error::{Error, Result, check_range};
@@ -199,7 +199,7 @@ impl Importance {
             check_range("target", channel, 0.0, f32::MAX)?;
         }
         let (response, background) = (response.measured.clone(), self.background.clone());
-        let measured = Measurements { response, background, pairs: None, paths: self.paths };
+        let measured = BatchMeasurements { response, background, pairs: None, paths: self.paths };
         solve::run(&measured, target.as_dvec3(), [Constraint::Exactly; 3])
     }
 

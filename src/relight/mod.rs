@@ -108,9 +108,9 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
 }
 
 /// Returns the response of the target to the whole emission, in batches.
-fn whole(batches: &Batches, fit: Fit) -> solve::Measurements {
+fn whole(batches: &Batches, fit: Fit) -> solve::BatchMeasurements {
     let means = batches.means();
-    solve::Measurements {
+    solve::BatchMeasurements {
         response: means.iter().map(|m| m.bins[0]).collect(),
         background: means.iter().map(|m| m.others).collect(),
         pairs: (fit == Fit::LeastSquares).then(|| means.iter().map(|m| m.pairs).collect()),
