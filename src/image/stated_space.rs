@@ -1,4 +1,4 @@
-//! Finds the statement of a picture file about its colour space.
+//! Determines the colour space that a picture file states. [`super::file_colour`] lists the statements that are read.
 
 use super::containers::{bmp_space, gif_extension, jpeg_segments, riff_chunks};
 use super::file_colour::{Conversion, Space, icc, png};
