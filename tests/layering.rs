@@ -1,5 +1,6 @@
 //! Checks rules of the source code: which module may use which, which files may contain `unsafe`, which macros are
-//! banned, how long files and comment lines may be, and that float constants state their origin.
+//! banned, how long files and comment lines may be, that float constants state their origin, and that the name of a
+//! type has one meaning in its module.
 
 #[path = "layering/circles.rs"]
 mod circles;
@@ -7,6 +8,8 @@ mod circles;
 mod comments;
 #[path = "layering/constants.rs"]
 mod constants;
+#[path = "layering/names.rs"]
+mod names;
 
 use std::path::{Path, PathBuf};
 
@@ -247,12 +250,49 @@ fn the_check_of_constants_sees_every_kind() {
 }
 
 #[test]
+fn the_name_of_a_type_has_one_meaning_in_a_module() {
+    let library = sources().into_iter().filter(|(path, _)| !is_test(path));
+    let library: Vec<(String, String)> = library.map(|(path, text)| (part(&path), text)).collect();
+    let found = names::with_two_meanings(&library);
+    assert!(found.is_empty(), "names that a module gives to two types: {found:?}");
+    // Test the check itself: types of unit tests and of other modules do not count.
+    let file = |part: &str, text: &str| (part.to_string(), text.to_string());
+    let all = [
+        file("a", "pub struct B<'a> {}\npub(super) type C = B;\nimpl D for B {\n    type Item = B;\n}\nstruct Params;"),
+        file("a", "enum C { B }\npub struct Params;\n#[cfg(test)]\nmod tests {\nstruct B;\n}"),
+        file("b", "struct B;"),
+    ];
+    assert_eq!(names::with_two_meanings(&all), ["a::C"]);
+}
+
+#[test]
+fn the_glossary_lists_names_of_types_in_several_modules() {
+    let library = sources().into_iter().filter(|(path, _)| !is_test(path));
+    let library: Vec<(String, String)> = library.map(|(path, text)| (part(&path), text)).collect();
+    let glossary = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/glossary.md")).unwrap();
+    let listed = names::listed(&glossary, "## Names with a meaning of their own in each module");
+    assert_eq!(names::of_several_modules(&library), listed, "left: types of src; right: rows of docs/glossary.md");
+    // Test the check itself: private types, the same module and `ffi` do not count.
+    let file = |part: &str, text: &str| (part.to_string(), text.to_string());
+    let all = [
+        file("a", "pub struct B;\npub enum C {}\nstruct D;\npub struct E;\npub struct Params;"),
+        file("a", "pub trait F {}\npub struct E;"),
+        file("b", "pub(super) type B = u8;\npub struct D;\npub struct Params;"),
+        file("ffi", "pub struct C;"),
+    ];
+    assert_eq!(names::of_several_modules(&all), ["B"]);
+    assert_eq!(names::listed("## H\n\n| name | m |\n|---|---|\n| B | b |\n\n## I\n| C | c |\n", "## H"), ["B"]);
+}
+
+#[test]
 fn files_of_a_module_do_not_use_each_other_in_circles() {
     let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
     let relative = |path: PathBuf| path.strip_prefix(&src).unwrap().to_string_lossy().into_owned();
     let sources: Vec<(String, String)> = sources().into_iter().map(|(path, text)| (relative(path), text)).collect();
     let found = circles::circles(&sources);
     assert!(found.is_empty(), "modules that use each other in a circle: {found:?}");
+    let found = circles::folder_circles(&sources);
+    assert!(found.is_empty(), "folders that use each other in a circle: {found:#?}");
     // Test the check itself: two files that use each other form a circle, and a re-export does not count as a use.
     let file = |name: &str, text: &str| (name.to_string(), text.to_string());
     let all = [
@@ -262,4 +302,12 @@ fn files_of_a_module_do_not_use_each_other_in_circles() {
     ];
     assert_eq!(circles::circles(&all), [["a::b", "a::c"]]);
     assert_eq!(circles::circles(&all[..2]), [[""; 0]; 0]);
+    // Two folders whose files use no circle, but that use each other.
+    let all = [
+        file("a/b/mod.rs", "pub mod d; use super::c::C;"),
+        file("a/b/d.rs", "pub struct D;"),
+        file("a/c.rs", "use super::b::d::D; pub struct C;"),
+    ];
+    assert_eq!(circles::circles(&all), [[""; 0]; 0]);
+    assert_eq!(circles::folder_circles(&all), [["a::b", "a::c"]]);
 }

@@ -117,7 +117,7 @@ widest! {
         let mut best = Best { cost: [f32::INFINITY; TILE], dx: [0.0; TILE], dy: [0.0; TILE] };
         for start in (0..w.len()).step_by(LANES) {
             let w = lanes(w, start);
-            // Write to new arrays: updating in place compiles to masked stores, which take three times as long.
+            // Write to new arrays: updating in place compiles to masked stores, which are slower.
             let (mut cost, mut dx, mut dy) = ([f32::INFINITY; LANES], [0.0; LANES], [0.0; LANES]);
             for Windows { fits, steps, favour } in windows.iter().flatten() {
                 let (value, residual) = (lanes(fits.value, start), lanes(fits.residual, start));

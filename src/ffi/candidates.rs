@@ -90,11 +90,11 @@ versioned!(luxfer_candidate, [SIZE], {
 /// The object behind a `luxfer_candidates` handle.
 pub(super) struct Candidates {
     context: Arc<Context>,
-    list: Vec<Entry>,
+    list: Vec<CandidateEntry>,
 }
 
 /// A candidate, with its name and its reason as C strings.
-struct Entry {
+struct CandidateEntry {
     candidate: Candidate,
     name: CString,
     reason: CString,
@@ -113,7 +113,7 @@ impl Handle for luxfer_candidates {
 }
 
 impl Candidates {
-    fn get(&self, index: u32) -> Result<&Entry> {
+    fn get(&self, index: u32) -> Result<&CandidateEntry> {
         self.list.get(index as usize).ok_or_else(|| missing("candidate", index, self.list.len()))
     }
 }
@@ -131,7 +131,7 @@ pub unsafe extern "C" fn luxfer_scene_get_candidates(
         let out = Out::new(candidates, "candidates")?;
         let scene = object.snapshot();
         scene.validate()?;
-        let entry = |candidate: Candidate| Entry {
+        let entry = |candidate: Candidate| CandidateEntry {
             name: c_string(&candidate.name),
             reason: c_string(&candidate.reason),
             candidate,

@@ -13,7 +13,7 @@ use super::pointer::{Out, bytes, bytes_mut, set_optional, text};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
 use crate::image::photo::PhotoMetadata;
-use crate::image::view::{ColourSpace, PixelLayout, Sample};
+use crate::image::view::{ColourSpace, PixelLayout, SampleFormat};
 use crate::image::{Image, io, view};
 use std::ffi::{c_char, c_void};
 use std::path::Path;
@@ -100,10 +100,10 @@ versioned!(luxfer_image_view, [VIEW_SIZE], {
 impl luxfer_image_view {
     fn layout(&self) -> Result<PixelLayout> {
         let sample = match self.sample {
-            LUXFER_SAMPLE_U8 => Sample::U8,
-            LUXFER_SAMPLE_U16 => Sample::U16,
-            LUXFER_SAMPLE_F16 => Sample::F16,
-            LUXFER_SAMPLE_F32 => Sample::F32,
+            LUXFER_SAMPLE_U8 => SampleFormat::U8,
+            LUXFER_SAMPLE_U16 => SampleFormat::U16,
+            LUXFER_SAMPLE_F16 => SampleFormat::F16,
+            LUXFER_SAMPLE_F32 => SampleFormat::F32,
             other => return Err(Error::argument(format!("view.sample is {other}; it must be a LUXFER_SAMPLE_ value"))),
         };
         if self.flags & !LUXFER_VIEW_BOTTOM_UP != 0 || self.reserved != 0 {

@@ -106,10 +106,10 @@ versioned!(luxfer_surface, [80], {
 /// The object behind a `luxfer_scene` handle.
 pub(super) struct SceneObject {
     context: Arc<Context>,
-    state: Mutex<State>,
+    state: Mutex<SceneState>,
 }
 
-struct State {
+struct SceneState {
     scene: Arc<Scene>,
     /// The scene prepared for tracing; `None` if no call has prepared it since the last change.
     world: Option<Arc<World>>,
@@ -132,7 +132,7 @@ impl SceneObject {
     /// Creates the object of a scene and counts the size of the scene in the memory budget.
     pub(super) fn new(context: &Arc<Context>, scene: Arc<Scene>) -> Result<Arc<Self>> {
         let charges = vec![context.charge(cost(&scene))?];
-        Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(State { scene, world: None, charges }) }))
+        Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(SceneState { scene, world: None, charges }) }))
     }
 
     /// Reads a scene from a file. Each part of the scene is counted in the memory budget before its memory is
@@ -143,13 +143,13 @@ impl SceneObject {
     ) -> Result<Arc<Self>> {
         let charges = Charges { context, monitor: context.monitor(), kept: RefCell::default() };
         let scene = Arc::new(read(&charges)?);
-        let state = State { scene, world: None, charges: charges.kept.into_inner() };
+        let state = SceneState { scene, world: None, charges: charges.kept.into_inner() };
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(state) }))
     }
 
     /// Creates the object of a scene that a stage has made; its size is not counted in the memory budget.
     pub(super) fn of_result(context: &Arc<Context>, scene: Arc<Scene>) -> Arc<Self> {
-        let state = State { scene, world: None, charges: Vec::new() };
+        let state = SceneState { scene, world: None, charges: Vec::new() };
         Arc::new(Self { context: context.clone(), state: Mutex::new(state) })
     }
 

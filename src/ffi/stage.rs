@@ -12,10 +12,10 @@ use std::sync::{Arc, Mutex};
 /// A stage, such as a segmentation or a rendering: its jobs compute a result `O` from inputs `I`.
 pub(super) struct Stage<I, O> {
     context: Arc<Context>,
-    state: Mutex<State<I, O>>,
+    state: Mutex<StageState<I, O>>,
 }
 
-struct State<I, O> {
+struct StageState<I, O> {
     busy: bool,
     inputs: I,
     output: Option<Arc<O>>,
@@ -29,7 +29,7 @@ impl<I, O> Owned for Stage<I, O> {
 
 impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
     pub(super) fn new(context: &Arc<Context>, inputs: I) -> Arc<Self> {
-        Arc::new(Self { context: context.clone(), state: Mutex::new(State { busy: false, inputs, output: None }) })
+        Arc::new(Self { context: context.clone(), state: Mutex::new(StageState { busy: false, inputs, output: None }) })
     }
 
     /// Changes the inputs; an error while a job runs. If `change` fails, it must leave the inputs as they were.
@@ -93,7 +93,7 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
     }
 }
 
-impl<I, O> State<I, O> {
+impl<I, O> StageState<I, O> {
     fn check_idle(&self) -> Result<()> {
         if self.busy {
             return Err(Error::new(

@@ -180,18 +180,18 @@ versioned!(luxfer_warning, [64], {
 /// The object behind a `luxfer_warnings` handle: a list of warnings, each with its stage.
 pub(super) struct Warnings {
     context: Arc<Context>,
-    list: Vec<Entry>,
+    list: Vec<WarningEntry>,
 }
 
 /// A warning with its stage, and its texts as C strings.
-struct Entry {
+struct WarningEntry {
     stage: luxfer_stage,
     warning: Warning,
     message: CString,
     advice: CString,
 }
 
-impl Entry {
+impl WarningEntry {
     fn new(stage: luxfer_stage, warning: Warning) -> Self {
         let (message, advice) = (c_string(&warning.message), c_string(&warning.advice));
         Self { stage, warning, message, advice }
@@ -211,7 +211,7 @@ impl Handle for luxfer_warnings {
 }
 
 impl Warnings {
-    fn get(&self, index: u32) -> Result<&Entry> {
+    fn get(&self, index: u32) -> Result<&WarningEntry> {
         self.list.get(index as usize).ok_or_else(|| missing("warning", index, self.list.len()))
     }
 }
@@ -230,7 +230,7 @@ pub(super) trait HasWarnings: Handle {
 pub(super) fn create<H: HasWarnings>(handle: *mut c_void, warnings: *mut *mut luxfer_warnings) -> luxfer_status {
     enter(handle.cast::<H>(), |object| {
         let out = Out::new(warnings, "warnings")?;
-        let list = H::list(object)?.into_iter().map(|(stage, warning)| Entry::new(stage, warning)).collect();
+        let list = H::list(object)?.into_iter().map(|(stage, warning)| WarningEntry::new(stage, warning)).collect();
         out.set(handle::give(Arc::new(Warnings { context: object.context().clone(), list })));
         Ok(())
     })

@@ -11,7 +11,7 @@ use super::Image;
 use super::containers::jpeg_segments;
 use super::limits::check_size;
 use super::memory;
-use super::photo::{Orientation, Upright};
+use super::orientation::{Orientation, Upright};
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 use image::ImageFormat;

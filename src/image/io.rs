@@ -11,8 +11,9 @@ use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::linear_to_srgb;
 use crate::image::file_colour::{Conversion, FileColour, Space};
 use crate::image::format::Format;
-use crate::image::photo::{self, Orientation, PhotoMetadata};
-use crate::image::{Image, inks, memory, openexr, radiance, raster, tiff, try_with_capacity};
+use crate::image::orientation::Orientation;
+use crate::image::photo::{self, PhotoMetadata};
+use crate::image::{Image, inks, memory, openexr, radiance, raster, stated_space, tiff, try_with_capacity};
 use image::ImageFormat;
 use std::io::Cursor;
 use std::path::Path;
@@ -55,7 +56,7 @@ pub fn decode_photo(bytes: &[u8], encoding: Encoding) -> Result<Photo> {
         Format::Exr => convert(openexr::decode(bytes)?, encoding)?,
         Format::Radiance => convert(radiance::decode(bytes)?, encoding)?,
         Format::Tiff | Format::Raster(_) => {
-            convert_stored(Space::of(bytes, format, &exif)?, encoding, |read| match (format, read) {
+            convert_stored(stated_space::of(bytes, format, &exif)?, encoding, |read| match (format, read) {
                 (Format::Tiff, Read::Inks) => tiff::decode_inks(bytes, exif.orientation),
                 (Format::Tiff, Read::Colours(encoding)) => tiff::decode(bytes, encoding, exif.orientation),
                 (Format::Raster(raster), Read::Colours(encoding)) => {

@@ -9,7 +9,7 @@
 
 use super::file_colour::{Chromaticities, Space};
 use super::limits::check_size;
-use super::photo::{Orientation, Upright};
+use super::orientation::{Orientation, Upright};
 use super::{Image, memory, try_vec};
 use crate::error::{Error, ErrorKind, Result};
 use glam::{DMat3, DVec3};
@@ -38,7 +38,7 @@ impl Header {
         let mut lines = Lines { bytes, at: 0 };
         let ends = || Error::format("the Radiance file ends within its header");
         lines.next().ok_or_else(ends)?;
-        let mut colour = Colour::default();
+        let mut colour = ColourHeader::default();
         loop {
             let line = lines.next().ok_or_else(ends)?.trim_ascii();
             if line.is_empty() {
@@ -98,20 +98,20 @@ fn resolution(line: &[u8]) -> Result<[usize; 3]> {
 }
 
 /// The lines of the header that say how the stored values encode colours.
-struct Colour {
+struct ColourHeader {
     /// Factor by which the values of the scene were multiplied before they were stored.
     factor: DVec3,
     chromaticities: Option<Chromaticities>,
     is_readable: bool,
 }
 
-impl Default for Colour {
+impl Default for ColourHeader {
     fn default() -> Self {
         Self { factor: DVec3::ONE, chromaticities: None, is_readable: true }
     }
 }
 
-impl Colour {
+impl ColourHeader {
     fn read(&mut self, key: &[u8], value: &[u8]) -> Result<()> {
         match key {
             b"FORMAT" if value == b"32-bit_rle_rgbe" => {}

@@ -3,7 +3,7 @@
 use super::colour::{srgb_to_linear, srgb8_table};
 use super::containers::{gif_frame, png_chunks};
 use super::limits::{Encoding, check_size};
-use super::photo::{Orientation, Upright};
+use super::orientation::{Orientation, Upright};
 use super::{Image, memory, try_vec};
 use crate::error::{Error, ErrorKind, Result};
 use image::{ImageDecoder, ImageError, ImageFormat, ImageReader, Limits};

@@ -8,14 +8,14 @@ use half::f16;
 
 /// The number format of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sample {
+pub enum SampleFormat {
     U8,
     U16,
     F16,
     F32,
 }
 
-impl Sample {
+impl SampleFormat {
     pub fn size(self) -> usize {
         match self {
             Self::U8 => 1,
@@ -37,7 +37,7 @@ pub enum ColourSpace {
 /// Size, sample format and strides of an image in the caller's memory. Integer samples stand for `[0, 1]`.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelLayout {
-    pub sample: Sample,
+    pub sample: SampleFormat,
     pub channels: usize,
     pub colour_space: ColourSpace,
     pub width: usize,
@@ -121,14 +121,14 @@ pub fn read(layout: PixelLayout, bytes: &[u8]) -> Result<Image> {
             let b = &bytes[start + c * size..start + (c + 1) * size];
             let encoded = layout.is_encoded(c);
             let value = match layout.sample {
-                Sample::U8 if encoded => {
+                SampleFormat::U8 if encoded => {
                     *out = table[b[0] as usize];
                     continue;
                 }
-                Sample::U8 => f32::from(b[0]) / 255.0,
-                Sample::U16 => f32::from(u16::from_ne_bytes([b[0], b[1]])) / 65535.0,
-                Sample::F16 => f16::from_ne_bytes([b[0], b[1]]).to_f32(),
-                Sample::F32 => f32::from_ne_bytes([b[0], b[1], b[2], b[3]]),
+                SampleFormat::U8 => f32::from(b[0]) / 255.0,
+                SampleFormat::U16 => f32::from(u16::from_ne_bytes([b[0], b[1]])) / 65535.0,
+                SampleFormat::F16 => f16::from_ne_bytes([b[0], b[1]]).to_f32(),
+                SampleFormat::F32 => f32::from_ne_bytes([b[0], b[1], b[2], b[3]]),
             };
             *out = if encoded { srgb_to_linear(value) } else { value };
         }
@@ -153,10 +153,10 @@ pub fn write(image: &Image, layout: PixelLayout, bytes: &mut [u8]) -> Result<()>
             let v = if layout.is_encoded(c) { linear_to_srgb(linear) } else { linear };
             let b = &mut bytes[start + c * size..start + (c + 1) * size];
             match layout.sample {
-                Sample::U8 => b[0] = (v.clamp(0.0, 1.0) * 255.0).round() as u8,
-                Sample::U16 => b.copy_from_slice(&((v.clamp(0.0, 1.0) * 65535.0).round() as u16).to_ne_bytes()),
-                Sample::F16 => b.copy_from_slice(&f16::from_f32(v).to_ne_bytes()),
-                Sample::F32 => b.copy_from_slice(&v.to_ne_bytes()),
+                SampleFormat::U8 => b[0] = (v.clamp(0.0, 1.0) * 255.0).round() as u8,
+                SampleFormat::U16 => b.copy_from_slice(&((v.clamp(0.0, 1.0) * 65535.0).round() as u16).to_ne_bytes()),
+                SampleFormat::F16 => b.copy_from_slice(&f16::from_f32(v).to_ne_bytes()),
+                SampleFormat::F32 => b.copy_from_slice(&v.to_ne_bytes()),
             }
         }
     }
@@ -167,7 +167,7 @@ pub fn write(image: &Image, layout: PixelLayout, bytes: &mut [u8]) -> Result<()>
 mod tests {
     use super::*;
 
-    fn layout(sample: Sample, colour_space: ColourSpace) -> PixelLayout {
+    fn layout(sample: SampleFormat, colour_space: ColourSpace) -> PixelLayout {
         PixelLayout {
             sample,
             channels: 3,
@@ -183,7 +183,8 @@ mod tests {
     #[test]
     fn every_format_round_trips_to_its_precision() {
         let image = Image::from_fn(4, 3, |x, y| [x as f32 / 3.0, y as f32 / 2.0, 0.25]).unwrap();
-        for (sample, tolerance) in [(Sample::U8, 0.003), (Sample::U16, 1e-5), (Sample::F16, 5e-4), (Sample::F32, 3e-7)]
+        for (sample, tolerance) in
+            [(SampleFormat::U8, 0.003), (SampleFormat::U16, 1e-5), (SampleFormat::F16, 5e-4), (SampleFormat::F32, 3e-7)]
         {
             for space in [ColourSpace::Linear, ColourSpace::Srgb] {
                 for bottom_up in [false, true] {
@@ -201,7 +202,7 @@ mod tests {
 
     #[test]
     fn layouts_that_lie_are_refused() {
-        let good = layout(Sample::F32, ColourSpace::Linear);
+        let good = layout(SampleFormat::F32, ColourSpace::Linear);
         assert!(good.checked(4 * 3 * 12).is_ok());
         assert!(good.checked(4 * 3 * 12 - 1).is_err());
         for bad in [

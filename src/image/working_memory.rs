@@ -2,10 +2,10 @@
 //! memory budget is charged with these bytes while the file is read.
 
 use super::containers::png_chunks;
-use super::file_colour::{self, icc};
+use super::file_colour::icc;
 use super::format::Format;
 use super::io::probe;
-use super::{memory, openexr, radiance, raster, tiff};
+use super::{memory, openexr, radiance, raster, stated_space, tiff};
 use crate::error::Result;
 use image::ImageFormat;
 
@@ -20,11 +20,11 @@ pub fn working_bytes(bytes: &[u8]) -> Result<u64> {
         Format::Raster(ImageFormat::Png) => png(bytes),
         Format::Raster(format) => raster::working_bytes(bytes, format)?,
     };
-    let profile = file_colour::profile(bytes, format)?;
+    let profile = stated_space::profile(bytes, format)?;
     // If a profile converts the inks, their amounts are first read into an image with four channels, each of four
     // bytes.
     let inks = match &profile {
-        Some(_) if file_colour::has_inks(bytes, format) => {
+        Some(_) if stated_space::has_inks(bytes, format) => {
             let (width, height, _) = probe(bytes)?;
             16 * width * height
         }

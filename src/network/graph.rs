@@ -49,7 +49,7 @@ impl Network {
         }
         let output_name = *model.outputs.first().ok_or_else(|| Error::format("the network has no output"))?;
 
-        let mut values = Values { numbers: HashMap::new(), constants: Vec::new() };
+        let mut values = ValueTable { numbers: HashMap::new(), constants: Vec::new() };
         let input = values.define(input_name, None)?;
         for (name, tensor) in model.constants {
             values.define(name, Some(tensor))?;
@@ -99,12 +99,12 @@ impl Network {
 }
 
 /// Assigns an index to each named value of a graph while the nodes of the graph are read.
-struct Values<'a> {
+struct ValueTable<'a> {
     numbers: HashMap<&'a str, usize>,
     constants: Vec<Option<Tensor>>,
 }
 
-impl<'a> Values<'a> {
+impl<'a> ValueTable<'a> {
     fn define(&mut self, name: &'a str, constant: Option<Tensor>) -> Result<usize> {
         let number = self.constants.len();
         if self.numbers.insert(name, number).is_some() {

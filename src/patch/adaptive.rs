@@ -30,7 +30,7 @@ pub(super) fn vote(out: &mut Image, ballot: &Ballot, job: Job, wanted: impl Fn(u
             let x = x..(x + TILE[0]).min(width);
             let is_wanted = y.clone().any(|y| x.clone().any(|x| wanted(y * width + x)));
             if is_wanted && job.check().is_ok() {
-                let tile = Tile { ballot, size: [width, height], x, y: y.clone() };
+                let tile = VoteTile { ballot, size: [width, height], x, y: y.clone() };
                 tile.paint(rows, &wanted);
             }
         }
@@ -40,7 +40,7 @@ pub(super) fn vote(out: &mut Image, ballot: &Ballot, job: Job, wanted: impl Fn(u
 }
 
 /// A rectangle of the picture, given by its columns `x` and rows `y`, that is voted on at once.
-struct Tile<'a> {
+struct VoteTile<'a> {
     ballot: &'a Ballot<'a>,
     /// Size of the whole picture.
     size: [usize; 2],
@@ -74,7 +74,7 @@ struct Power {
     exemplar: f64,
 }
 
-impl Tile<'_> {
+impl VoteTile<'_> {
     /// Paints the wanted pixels; `rows` holds the full rows of the tile.
     fn paint(&self, rows: &mut [f32], wanted: impl Fn(usize) -> bool) {
         let width = self.size[0];

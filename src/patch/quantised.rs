@@ -8,6 +8,12 @@ use crate::job::Job;
 /// The number of samples per pixel is padded to a multiple of this: half an AVX2 register of `i16`.
 pub const LANES: usize = 8;
 
+/// Largest quantised sample: a round number below the largest 16-bit integer. [rounding]
+const MAX_SAMPLE: f64 = 32_000.0;
+/// Share of 2³¹ up to which sums of squared differences may come before rounding. Rounding can lengthen each difference
+/// by one step; the margin of two per cent leaves room for that. [rounding]
+const MAX_SUM_SHARE: f64 = 0.98;
+
 /// Interleaved 16-bit channels, each multiplied by the square root of its weight, so that a plain sum of squared
 /// differences equals the weighted sum of Eq. 1 of StyLit.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -54,14 +60,13 @@ impl Quantiser {
     /// `patch` stays below 2³¹.
     pub fn for_weights(weights: &[f64], patch: usize) -> Vec<Self> {
         let unit = Self::unit(weights, patch);
-        weights.iter().map(|w| Self { scale: (w.sqrt() * unit).min(32_000.0) as f32 }).collect()
+        weights.iter().map(|w| Self { scale: (w.sqrt() * unit).min(MAX_SAMPLE) as f32 }).collect()
     }
 
     /// Returns the scale of a channel of weight 1: the number to which the value 1 is quantised, before rounding.
     pub fn unit(weights: &[f64], patch: usize) -> f64 {
         let total: f64 = weights.iter().sum();
-        // Rounding can lengthen each difference by one step; the margin of two per cent leaves room for that.
-        (0.98 * f64::from(i32::MAX) / ((patch * patch) as f64 * total)).sqrt()
+        (MAX_SUM_SHARE * f64::from(i32::MAX) / ((patch * patch) as f64 * total)).sqrt()
     }
 
     pub fn quantise(self, value: f32) -> i16 {

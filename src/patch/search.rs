@@ -109,7 +109,7 @@ impl Search<'_> {
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
         let key = hash(self.seed, &[iteration.index]);
         let tiles = exec::map(columns * rows, job, |t| {
-            let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
+            let mut tile = FieldTile::cut(field, t % columns * TILE, t / columns * TILE);
             tile.search(self, field, iteration, key, &active).then_some(tile)
         })?;
         tiles.into_iter().flatten().for_each(|tile| tile.paste(field));
@@ -125,7 +125,7 @@ impl Search<'_> {
     pub fn join(&self, field: &mut Field, seam: u32, job: Job, active: impl Fn(usize) -> bool + Sync) -> Result<()> {
         let (columns, rows) = (field.width.div_ceil(TILE), field.height.div_ceil(TILE));
         let tiles = exec::map(columns * rows, job, |t| {
-            let mut tile = Tile::cut(field, t % columns * TILE, t / columns * TILE);
+            let mut tile = FieldTile::cut(field, t % columns * TILE, t / columns * TILE);
             tile.join(self, field, seam, &active).then_some(tile)
         })?;
         tiles.into_iter().flatten().for_each(|tile| tile.paste(field));
@@ -134,7 +134,7 @@ impl Search<'_> {
 }
 
 /// A copy of a rectangular part of the field.
-struct Tile {
+struct FieldTile {
     x0: usize,
     y0: usize,
     width: usize,
@@ -143,7 +143,7 @@ struct Tile {
     error: Vec<u32>,
 }
 
-impl Tile {
+impl FieldTile {
     fn cut(field: &Field, x0: usize, y0: usize) -> Self {
         let (width, height) = (TILE.min(field.width - x0), TILE.min(field.height - y0));
         let copy = |from: &[u32]| -> Vec<u32> {

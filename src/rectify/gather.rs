@@ -8,12 +8,12 @@ use crate::simd::Level;
 use glam::Vec4;
 
 /// The sum of the weighted taps of each pixel of a run, with up to three channels. The remaining lanes are undefined.
-pub type Sums = [Vec4; RUN];
+pub type TapSums = [Vec4; RUN];
 
 /// Adds the weighted taps of each pixel to the sums. If the image has one or three channels, sums all channels;
 /// otherwise sums only the given channel.
 #[inline(always)]
-pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &[bool; RUN], to: &mut Sums) {
+pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &[bool; RUN], to: &mut TapSums) {
     match (source.channels, level) {
         (1, _) => gather::<GreyLanes>(source, taps, to),
         // SAFETY: `level` is a level that the processor supports.
@@ -36,13 +36,13 @@ pub fn sum(level: Level, source: &Image, channel: usize, taps: &Taps, is_seen: &
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
-fn gather_wide(source: &Image, taps: &Taps, to: &mut Sums) {
+fn gather_wide(source: &Image, taps: &Taps, to: &mut TapSums) {
     gather::<super::lanes::RgbLanesAvx512>(source, taps, to);
 }
 
 /// Adds the weighted taps of the pixels whose taps all lie inside the source.
 #[inline(always)]
-fn gather<F: PixelLanes>(source: &Image, taps: &Taps, to: &mut Sums) {
+fn gather<F: PixelLanes>(source: &Image, taps: &Taps, to: &mut TapSums) {
     match (taps.is_sharp, taps.is_sheared) {
         (true, true) => gather_as::<F>(source, taps, true, true, to),
         (true, false) => gather_as::<F>(source, taps, true, false, to),
@@ -54,7 +54,7 @@ fn gather<F: PixelLanes>(source: &Image, taps: &Taps, to: &mut Sums) {
 // Plain loops without closures: a closure is a separate function, which the compiler does not inline into code
 // compiled for other instruction sets.
 #[inline(always)]
-fn gather_as<F: PixelLanes>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: bool, to: &mut Sums) {
+fn gather_as<F: PixelLanes>(source: &Image, taps: &Taps, is_sharp: bool, is_sheared: bool, to: &mut TapSums) {
     let (samples, stride) = (&source.data[..], source.row_len());
     assert!(source.channels == F::CHANNELS && samples.len() == source.height * stride);
     for i in 0..RUN {
@@ -100,7 +100,7 @@ fn within(value: Vec4, low: Vec4, high: Vec4) -> Vec4 {
 /// pixel.
 #[cold]
 #[inline(never)]
-fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: usize, to: &mut Sums) {
+fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: usize, to: &mut TapSums) {
     let clamp = |at: i32, side: usize| at.clamp(0, side as i32 - 1) as usize;
     for (c, channel) in channels.enumerate() {
         let (mut columns, mut low, mut high) = ([0.0; TAPS], f32::INFINITY, f32::NEG_INFINITY);
@@ -120,7 +120,7 @@ fn one_by_one(source: &Image, channels: std::ops::Range<usize>, taps: &Taps, i: 
 /// Divides the sums by `parts`, the number of parts into which each footprint was split, and writes them to `out`.
 /// With three channels, writes all channels; otherwise writes only the given channel.
 #[inline(always)]
-pub fn store(sums: &Sums, parts: usize, channels: usize, channel: usize, mut out: &mut [f32]) {
+pub fn store(sums: &TapSums, parts: usize, channels: usize, channel: usize, mut out: &mut [f32]) {
     let share = 1.0 / parts as f32;
     if channels == 3 {
         for sum in &sums[..out.len() / 3] {

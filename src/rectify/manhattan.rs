@@ -16,6 +16,12 @@ use glam::{DMat3, DQuat, DVec3};
 /// focal length; the difference is the loss by the search for the focal length. [bench vp]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
+/// Range of focal lengths in the refinement: angles of view from 9.5 to 136 degrees, more than the angles of [`FOCALS`]
+/// at both ends. It keeps steps from a bad start from running off to a degenerate focal length. [convention]
+const FOCAL_RANGE: [f64; 2] = [0.4, 12.0];
+/// Weight that fixes a given focal length in the refinement, relative to the weight of the lines. [rounding]
+const FIXED_WEIGHT: f64 = 1e12;
+
 /// Prior of the focal length in the search. `USUAL_FOCAL`: median in units of half the longer image side. For a
 /// landscape photo it equals the median of [`super::focal`]; for a portrait photo it is longer, because that median is
 /// a share of the image width. `SEARCH_SPREAD`: standard deviation of the logarithm. \[bench vp:panoramas\]
@@ -258,7 +264,7 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
         }
         // Add the prior of the focal length as a weak observation. A given focal length stays fixed by a large
         // diagonal term.
-        let firmness = if focal.is_some() { 1e12 } else { 0.01 / (SEARCH_SPREAD * SEARCH_SPREAD) } * scale;
+        let firmness = if focal.is_some() { FIXED_WEIGHT } else { 0.01 / (SEARCH_SPREAD * SEARCH_SPREAD) } * scale;
         normal[3][3] += firmness;
         if focal.is_none() {
             right[3] -= firmness * (current.focal / USUAL_FOCAL).ln();
@@ -268,7 +274,11 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
         }
         let Some(step) = linear::solve(normal, right) else { break };
         let rotation = DMat3::from_quat(DQuat::from_scaled_axis(DVec3::new(step[0], step[1], step[2])));
-        let focal = if focal.is_some() { current.focal } else { (current.focal * step[3].exp()).clamp(0.4, 12.0) };
+        let focal = if focal.is_some() {
+            current.focal
+        } else {
+            (current.focal * step[3].exp()).clamp(FOCAL_RANGE[0], FOCAL_RANGE[1])
+        };
         current = Triplet { axes: rotation * current.axes, focal, score: 0.0 };
         current.score = score(lines, &current);
         if current.score > best.score {

@@ -24,7 +24,7 @@ const TRIM: f64 = 2.0;
 /// A region is dense enough if its pixels cover at least this share of its bounding rectangle. Otherwise it is grown
 /// again with a tighter tolerance. If that does not suffice, its pixels far from the seed are cut off. Regions that
 /// arise from noise have gaps and cover less. [bench lines]
-const MIN_DENSITY: f64 = 0.6;
+const MIN_PIXEL_DENSITY: f64 = 0.6;
 
 /// Finds the straight edges of a photo: statistically significant regions of similar gradient direction.
 pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
@@ -108,7 +108,7 @@ struct FittedSegment {
 }
 
 impl FittedSegment {
-    fn density(&self) -> f64 {
+    fn pixel_density(&self) -> f64 {
         self.pixels as f64 / (self.segment.length() * self.width).max(1.0)
     }
 
@@ -116,7 +116,7 @@ impl FittedSegment {
     /// direction as the region has, if all directions are random. The probability is Chernoff's bound of the binomial
     /// tail. 0 if the region covers no more of the rectangle than chance predicts.
     fn log_surprise(&self) -> f64 {
-        let share = self.density().min(1.0 - 1e-9);
+        let share = self.pixel_density().min(1.0 - 1e-9);
         let chance = TOLERANCE / std::f64::consts::PI;
         let divergence = share * (share / chance).ln() + (1.0 - share) * ((1.0 - share) / (1.0 - chance)).ln();
         if share > chance { self.pixels as f64 / share * divergence } else { 0.0 }
@@ -130,14 +130,14 @@ impl Grower<'_> {
     fn straight_region(&mut self, seed: u32) -> Option<FittedSegment> {
         self.grow(seed, TOLERANCE);
         let mut found = self.fit()?;
-        if found.density() < MIN_DENSITY {
+        if found.pixel_density() < MIN_PIXEL_DENSITY {
             self.release();
             self.grow(seed, TOLERANCE / 2.0);
             found = self.fit()?;
         }
         let origin = Pixel::new(self.gradients.width, seed).centre();
         let mut radius = found.segment.a.distance(origin).max(found.segment.b.distance(origin));
-        while found.density() < MIN_DENSITY {
+        while found.pixel_density() < MIN_PIXEL_DENSITY {
             radius *= 0.75;
             let Self { used, region, .. } = self;
             region.retain(|p| {

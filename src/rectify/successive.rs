@@ -14,6 +14,20 @@ use glam::{DVec2, DVec3};
 /// Number of line pairs drawn per vanishing point.
 const DRAWS: usize = 600;
 
+/// Maximum distance between an inlier and the vanishing point for each metric, in pixels of an image whose longer side
+/// is `LONGER_SIDE` pixels. [bench vp]
+const MAX_SEGMENT_DISTANCE: f64 = 1.5;
+const MAX_VISIBLE_LINE_DISTANCE: f64 = 8.0;
+const LONGER_SIDE: f64 = 640.0;
+
+/// Pattern search for a vanishing point. `FIRST_STEP`: the first step of alpha, as a share of 1 - alpha. `TURN`: the
+/// change of theta, in radians, for a step of 1. The choice is free, because the step is halved wherever no neighbour
+/// is better. [convention]
+const FIRST_STEP: f64 = 0.2;
+const TURN: f64 = 0.3;
+/// Step at which the search ends, and least value of 1 - alpha in a step. [rounding]
+const LAST_STEP: f64 = 1e-9;
+
 /// Finds at most `count` vanishing points, in homogeneous pixels and in the order of detection.
 pub fn search(
     frame: &Frame,
@@ -32,9 +46,11 @@ pub fn search(
             Metric::VisibleLine => visible(s, w, h).and_then(|s| Line::new(&s)),
         })
         .collect();
-    // Maximum distance between an inlier and the vanishing point, for each metric, in pixels of an image whose longer
-    // side is 640 pixels. These values gave the best results on labelled photos. [bench vp]
-    let limit = w.max(h) / 640.0 * if params.metric == Metric::Segment { 1.5 } else { 8.0 };
+    let max_distance = match params.metric {
+        Metric::Segment => MAX_SEGMENT_DISTANCE,
+        Metric::VisibleLine => MAX_VISIBLE_LINE_DISTANCE,
+    };
+    let limit = w.max(h) / LONGER_SIDE * max_distance;
     let distance = |line: &Line, p: DVec3| match params.metric {
         Metric::Segment => line.endpoint_distance(p),
         Metric::VisibleLine => line.printed_distance(p),
@@ -88,10 +104,10 @@ fn regress(start: DVec3, origin: DVec2, loss: impl Fn(DVec3) -> f64) -> DVec3 {
     let (mut alpha, mut theta) = to_alpha(start, origin);
     let mut best = loss(start);
     let mut point = start;
-    let mut step = 0.2;
-    while step > 1e-9 {
-        let alpha_step = (1.0 - alpha).max(1e-9) * step;
-        let turn = step * 0.3;
+    let mut step = FIRST_STEP;
+    while step > LAST_STEP {
+        let alpha_step = (1.0 - alpha).max(LAST_STEP) * step;
+        let turn = step * TURN;
         let tries = [(alpha_step, 0.0), (-alpha_step, 0.0), (0.0, turn), (0.0, -turn)];
         let next = tries
             .iter()

@@ -15,8 +15,8 @@ use glam::{DMat3, DVec2, DVec3};
 /// to the points found.
 const MAX_LINES: usize = 2500;
 
-/// Maximum standard deviation of a direction in radians; directions with a larger one are rejected. No figure changes
-/// between half and twice this value. [bench vp:panoramas]
+/// Maximum standard deviation of a direction in radians; directions with a larger one are rejected.
+/// [bench vp:panoramas]
 const MAX_ERROR: f64 = 0.2;
 
 /// Standard deviations of the priors with which directions are refined. `SQUARENESS`: deviation from a right angle of

@@ -8,10 +8,10 @@ use glam::{DVec3, Vec2, Vec3};
 pub(super) struct Bins<'a> {
     /// For each mesh, whether it has the emissive material to solve for.
     of_emitter: Vec<bool>,
-    division: Division<'a>,
+    division: Partition<'a>,
 }
 
-pub(super) enum Division<'a> {
+pub(super) enum Partition<'a> {
     /// One bin for all of the emission.
     Whole,
     /// One bin per lamp; light that comes from elsewhere counts as background.
@@ -21,15 +21,15 @@ pub(super) enum Division<'a> {
 }
 
 impl<'a> Bins<'a> {
-    pub fn new(world: &World, emitter: usize, division: Division<'a>) -> Self {
+    pub fn new(world: &World, emitter: usize, division: Partition<'a>) -> Self {
         Self { of_emitter: world.scene().meshes.iter().map(|m| m.material == emitter).collect(), division }
     }
 
     pub fn count(&self) -> usize {
         match &self.division {
-            Division::Whole => 1,
-            Division::Lamps(lamps) => lamps.count(),
-            Division::Cells { width, height } => width * height,
+            Partition::Whole => 1,
+            Partition::Lamps(lamps) => lamps.count(),
+            Partition::Cells { width, height } => width * height,
         }
     }
 
@@ -38,16 +38,16 @@ impl<'a> Bins<'a> {
     fn find(&self, source: LightSource) -> Option<usize> {
         let (mesh, triangle, uv) = match (source, &self.division) {
             (LightSource::Surface { mesh, triangle, uv }, _) => (mesh, triangle, uv),
-            (LightSource::Punctual(index), Division::Lamps(lamps)) => return lamps.find_light(index),
+            (LightSource::Punctual(index), Partition::Lamps(lamps)) => return lamps.find_light(index),
             _ => return None,
         };
         if !self.of_emitter[mesh as usize] {
             return None;
         }
         match &self.division {
-            Division::Whole => Some(0),
-            Division::Lamps(lamps) => lamps.find(mesh, triangle, uv),
-            Division::Cells { width, height } => Some(cell(uv, *width, *height)),
+            Partition::Whole => Some(0),
+            Partition::Lamps(lamps) => lamps.find(mesh, triangle, uv),
+            Partition::Cells { width, height } => Some(cell(uv, *width, *height)),
         }
     }
 }

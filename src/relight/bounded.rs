@@ -14,7 +14,7 @@
 use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
 
-pub(super) struct Problem<'a> {
+pub(super) struct BoundedLeastSquares<'a> {
     /// The matrix `A`, row by row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
@@ -37,13 +37,13 @@ const CONVERGED_AT_BOUND: f64 = 1e-8;
 
 /// The state of an unknown.
 #[derive(Clone, Copy, PartialEq)]
-enum State {
+enum BoundStatus {
     AtLower,
     Free,
     AtUpper,
 }
 
-impl Problem<'_> {
+impl BoundedLeastSquares<'_> {
     /// Returns the solution `x`.
     ///
     /// # Errors
@@ -77,11 +77,11 @@ impl Problem<'_> {
     }
 
     /// Returns the state of each unknown at the dual point `z`.
-    fn states(&self, z: &[f64]) -> Vec<State> {
+    fn states(&self, z: &[f64]) -> Vec<BoundStatus> {
         let state = |(x, u): (f64, &f64)| match x {
-            x if x <= 0.0 => State::AtLower,
-            x if x >= *u => State::AtUpper,
-            _ => State::Free,
+            x if x <= 0.0 => BoundStatus::AtLower,
+            x if x >= *u => BoundStatus::AtUpper,
+            _ => BoundStatus::Free,
         };
         self.unclipped(z).into_iter().zip(self.upper).map(state).collect()
     }
@@ -114,11 +114,11 @@ impl Problem<'_> {
 
     /// The Newton step of the dual function: `−(λ I + Σ a aᵀ)⁻¹ g`, where `g` is the gradient. The sum is over the
     /// columns `a` of `A` whose unknowns lie between their bounds.
-    fn newton_step(&self, lambda: f64, states: &[State], gradient: &[f64]) -> Vec<f64> {
+    fn newton_step(&self, lambda: f64, states: &[BoundStatus], gradient: &[f64]) -> Vec<f64> {
         let m = gradient.len();
         let mut hessian = vec![0.0; m * m];
         for i in 0..m {
-            let count = |(a, state): (&f64, &State)| if *state == State::Free { *a } else { 0.0 };
+            let count = |(a, state): (&f64, &BoundStatus)| if *state == BoundStatus::Free { *a } else { 0.0 };
             let between: Vec<f64> = self.row(i).iter().zip(states).map(count).collect();
             for k in 0..=i {
                 hessian[i * m + k] = dot(&between, self.row(k));
@@ -201,7 +201,7 @@ mod tests {
         upper: &[f64],
     ) -> Vec<f64> {
         let regularisation = regularisation * dot(matrix, matrix) / rows as f64;
-        Problem { matrix, right, regularisation, preferred, upper }.solve().unwrap()
+        BoundedLeastSquares { matrix, right, regularisation, preferred, upper }.solve().unwrap()
     }
 
     const FREE: f64 = f64::INFINITY;
@@ -227,7 +227,9 @@ mod tests {
         assert!((x[0] - 1.0).abs() < 1e-8 && (x[1] - 3.0).abs() < 1e-8, "{x:?}");
         // Without equations, the solution is the preferred value, clipped to its bounds.
         assert_eq!(
-            Problem { matrix: &[], right: &[], regularisation: 1.0, preferred: &[0.7], upper: &[0.5] }.solve().unwrap(),
+            BoundedLeastSquares { matrix: &[], right: &[], regularisation: 1.0, preferred: &[0.7], upper: &[0.5] }
+                .solve()
+                .unwrap(),
             [0.5]
         );
     }

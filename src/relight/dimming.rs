@@ -9,7 +9,7 @@
 use super::bounded::dot;
 use super::sided::Constraint;
 
-/// The terms of the goals, one per row of the matrix: see [`super::sided::Problem`].
+/// The terms of the goals, one per row of the matrix: see [`super::sided::OneSidedLeastSquares`].
 pub(super) struct Terms<'a> {
     pub matrix: &'a [f64],
     pub right: &'a [f64],
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-14;
 
 /// The current powers, the index of the level chosen for each group, and the light of each term under these powers.
 #[derive(Clone)]
-struct State {
+struct DimmingState {
     powers: Vec<f64>,
     chosen: Vec<usize>,
     light: Vec<f64>,
@@ -43,14 +43,14 @@ impl Terms<'_> {
         let light = self.matrix.chunks_exact(x.len()).map(|row| dot(row, x)).collect();
         // Try two starting points: all groups at their nearest levels, and the unrounded powers. From the unrounded
         // powers, the descent rounds one group after the other.
-        let after = State { powers: x.to_vec(), chosen, light };
+        let after = DimmingState { powers: x.to_vec(), chosen, light };
         let mut at_once = after.clone();
         (0..x.len()).for_each(|j| self.set(&mut at_once, j, after.chosen[j], levels));
         let [a, b] = [at_once, after].map(|start| self.descend(start, levels, &max_level));
         if self.sum(&a, 0, 0.0) <= self.sum(&b, 0, 0.0) { a.powers } else { b.powers }
     }
 
-    fn descend(&self, mut state: State, levels: &[f64], max_level: &[usize]) -> State {
+    fn descend(&self, mut state: DimmingState, levels: &[f64], max_level: &[usize]) -> DimmingState {
         let small = ROUNDING * dot(self.right, self.right);
         for round in 0..MAX_ROUNDS {
             let mut changed = false;
@@ -76,14 +76,14 @@ impl Terms<'_> {
         state
     }
 
-    fn set(&self, state: &mut State, j: usize, level: usize, levels: &[f64]) {
+    fn set(&self, state: &mut DimmingState, j: usize, level: usize, levels: &[f64]) {
         let (n, change) = (state.powers.len(), levels[level] - state.powers[j]);
         state.light.iter_mut().enumerate().for_each(|(i, l)| *l += self.matrix[i * n + j] * change);
         (state.powers[j], state.chosen[j]) = (levels[level], level);
     }
 
     /// Returns the sum of squared residuals after the power of group `j` changes by `change`.
-    fn sum(&self, state: &State, j: usize, change: f64) -> f64 {
+    fn sum(&self, state: &DimmingState, j: usize, change: f64) -> f64 {
         let n = state.powers.len();
         let light = |i: usize| state.light[i] + self.matrix[i * n + j] * change;
         (0..self.right.len()).map(|i| self.constraints[i].miss(light(i) - self.right[i]).powi(2)).sum()

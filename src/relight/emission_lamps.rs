@@ -13,7 +13,7 @@ pub struct EmissionLamps {
     count: usize,
     /// For each texel or triangle, the number of its lamp plus one; 0 outside the lamps.
     labels: Vec<u32>,
-    division: Division,
+    division: Labelling,
     /// Centre of each lamp: texture coordinates (with z = 0) for regions of a texture, a position in metres otherwise.
     centres: Vec<Vec3>,
     /// Area of each lamp in texels or m²; for a punctual light, a number that identifies its kind.
@@ -25,7 +25,7 @@ pub struct EmissionLamps {
 const TYPE_GAP: f32 = 0.25;
 
 #[derive(Clone, Debug, PartialEq)]
-enum Division {
+enum Labelling {
     /// One label per texel. Texture coordinates outside the unit square repeat the texture.
     Texels { width: usize, height: usize },
     /// One label per triangle. For each mesh, `first` holds the index in `labels` of the mesh's first triangle.
@@ -74,7 +74,7 @@ impl EmissionLamps {
         let size = DVec2::new(width as f64, height as f64);
         let centres = sums.iter().map(|(sum, n)| (*sum / n.max(1.0) / size).as_vec2().extend(0.0)).collect();
         let sizes = sums.iter().map(|(_, n)| *n as f32).collect();
-        Self { count, labels, division: Division::Texels { width, height }, centres, sizes }.checked()
+        Self { count, labels, division: Labelling::Texels { width, height }, centres, sizes }.checked()
     }
 
     /// Makes lamps from the emissive meshes: triangles that are connected by shared vertices form one lamp.
@@ -111,7 +111,7 @@ impl EmissionLamps {
             }
             next += mesh.triangles.len();
         }
-        Self { count: centres.len(), labels, division: Division::Triangles { first }, centres, sizes }.checked()
+        Self { count: centres.len(), labels, division: Labelling::Triangles { first }, centres, sizes }.checked()
     }
 
     /// Makes each punctual light of the scene a lamp; surfaces do not count as lamps.
@@ -130,7 +130,7 @@ impl EmissionLamps {
             PunctualLight::Luminaire { distribution, .. } => 3.0 + distribution as f32,
         };
         let sizes = scene.lights.iter().map(kind).collect();
-        Self { count: centres.len(), labels: Vec::new(), division: Division::Lights, centres, sizes }.checked()
+        Self { count: centres.len(), labels: Vec::new(), division: Labelling::Lights, centres, sizes }.checked()
     }
 
     fn checked(self) -> Result<Self> {
@@ -166,8 +166,8 @@ impl EmissionLamps {
     /// `InvalidArgument` unless the lamps are regions of a texture of this size and there is a scale for each of them.
     pub fn scaled(&self, texture: &Image, scale: &[DVec3]) -> Result<Image> {
         let fits = match &self.division {
-            Division::Texels { width, height } => (*width, *height) == (texture.width, texture.height),
-            Division::Triangles { .. } | Division::Lights => false,
+            Labelling::Texels { width, height } => (*width, *height) == (texture.width, texture.height),
+            Labelling::Triangles { .. } | Labelling::Lights => false,
         };
         if !fits || scale.len() != self.count {
             return Err(Error::argument("the lamps are not those of this texture"));
@@ -207,26 +207,26 @@ impl EmissionLamps {
     /// Groups lamps by type: surfaces of about equal area, punctual lights of one kind, and luminaires of one
     /// distribution. The groups are numbered by increasing area or kind.
     pub fn types(&self) -> (Vec<u32>, usize) {
-        let gap = if self.division == Division::Lights { 0.0 } else { TYPE_GAP };
+        let gap = if self.division == Labelling::Lights { 0.0 } else { TYPE_GAP };
         self.chained(|i| self.sizes[i], |a, b| b > a * (1.0 + gap))
     }
 
     /// Returns the lamp of a punctual light; `None` if the lamps are surfaces.
     #[inline]
     pub(super) fn find_light(&self, index: u32) -> Option<usize> {
-        (self.division == Division::Lights).then_some(index as usize)
+        (self.division == Labelling::Lights).then_some(index as usize)
     }
 
     #[inline]
     pub(super) fn find(&self, mesh: u32, triangle: u32, uv: Vec2) -> Option<usize> {
         let label = match &self.division {
-            Division::Texels { width, height } => {
+            Labelling::Texels { width, height } => {
                 // Look up texels as the texture itself does (`scene::texture`).
                 let at = |t: f32, n: usize| ((t * n as f32).floor() as i64).rem_euclid(n as i64) as usize;
                 self.labels[at(uv.y, *height) * width + at(uv.x, *width)]
             }
-            Division::Triangles { first } => self.labels[first[mesh as usize] + triangle as usize],
-            Division::Lights => 0,
+            Labelling::Triangles { first } => self.labels[first[mesh as usize] + triangle as usize],
+            Labelling::Lights => 0,
         };
         (label as usize).checked_sub(1)
     }

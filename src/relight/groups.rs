@@ -16,7 +16,7 @@
 use super::dimming::Terms;
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::responses::{Aspect, Estimate, Goal, Responses};
-use super::sided::{self, Constraint, Problem};
+use super::sided::{self, Constraint, OneSidedLeastSquares};
 use super::solution::TargetStatus;
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::exec;
@@ -226,12 +226,12 @@ impl Equations {
         let equal = sided::common_power(&together, &self.right, &self.constraints);
         let preferred: Vec<f64> = upper.iter().map(|u| equal.min(*u)).collect();
         let Self { matrix, right, constraints, .. } = self;
-        Problem { matrix, right, constraints, regularisation, preferred: &preferred, upper }.solve()
+        OneSidedLeastSquares { matrix, right, constraints, regularisation, preferred: &preferred, upper }.solve()
     }
 }
 
 /// Responses and backgrounds, averaged over batches.
-struct Measured {
+struct MeanResponses {
     /// For each goal, the response to each group.
     rows: Vec<Vec<DVec3>>,
     background: Vec<DVec3>,
@@ -239,7 +239,7 @@ struct Measured {
 
 impl System<'_> {
     /// Returns the means over all batches.
-    fn means(&self, job: Job) -> Result<Measured> {
+    fn means(&self, job: Job) -> Result<MeanResponses> {
         let n = BATCHES as f64;
         let mean = |goal: usize| {
             let mut means = try_vec(self.responses.lamps(), DVec3::ZERO)?;
@@ -253,14 +253,14 @@ impl System<'_> {
         };
         let background = |goal| (0..BATCHES).map(|b| self.responses.background_of_batch(goal, b)).sum::<DVec3>() / n;
         let goals = 0..self.goals.len();
-        Ok(Measured {
+        Ok(MeanResponses {
             rows: goals.clone().map(mean).collect::<Result<_>>()?,
             background: goals.map(background).collect(),
         })
     }
 
     /// Returns the means over all batches but one.
-    fn means_without(&self, all: &Measured, batch: usize) -> Measured {
+    fn means_without(&self, all: &MeanResponses, batch: usize) -> MeanResponses {
         // Clamp to 0, because rounding may make the remainder negative.
         let rest = |mean: &DVec3, part: DVec3| {
             let n = BATCHES as f64;
@@ -270,19 +270,19 @@ impl System<'_> {
             row.iter().zip(self.responses.batch(goal, batch)).map(|(mean, part)| rest(mean, *part)).collect()
         };
         let other = |(goal, mean): (usize, &DVec3)| rest(mean, self.responses.background_of_batch(goal, batch));
-        Measured {
+        MeanResponses {
             rows: all.rows.iter().enumerate().map(row).collect(),
             background: all.background.iter().enumerate().map(other).collect(),
         }
     }
 
-    fn solve(&self, measured: &Measured) -> Result<Powers> {
+    fn solve(&self, measured: &MeanResponses) -> Result<Powers> {
         let upper = self.upper();
         self.by_channels(|channels| self.equations(measured, channels).solve(&upper, self.params.regularisation))
     }
 
     /// Replaces the powers by the dimming levels that together best meet the goals ([`super::dimming`]).
-    fn stepped(&self, measured: &Measured, whole: &[DVec3]) -> Vec<DVec3> {
+    fn stepped(&self, measured: &MeanResponses, whole: &[DVec3]) -> Vec<DVec3> {
         let upper = self.upper();
         let mut levels = self.params.levels.clone();
         levels.sort_by(f64::total_cmp);
@@ -314,7 +314,7 @@ impl System<'_> {
     }
 
     /// Sets up the equations of all goals for the given channels.
-    fn equations(&self, measured: &Measured, channels: &[usize]) -> Equations {
+    fn equations(&self, measured: &MeanResponses, channels: &[usize]) -> Equations {
         let mut equations = Equations { groups: self.responses.lamps(), ..Equations::default() };
         for ((goal, row), background) in self.goals.iter().zip(&measured.rows).zip(&measured.background) {
             let target = goal.target.as_dvec3();

@@ -9,13 +9,13 @@
 //! Cells limit the resolution: within a cell, `I` is taken as constant. Among matt surfaces `I` is smooth, and the
 //! error is proportional to the squared size of a cell; [`Importance::respond`] estimates this error.
 
-use super::bins::{Bins, Division};
+use super::bins::{Bins, Partition};
 use super::estimate::BATCHES;
 use super::params::Params;
 use super::responses::{Estimate, Goal};
 use super::sided::Constraint;
 use super::solution::Solution;
-use super::solve::{self, Measured};
+use super::solve::{self, BatchMeasurements};
 use super::target::Sampler;
 use super::transport::{Batches, Stop};
 use crate::error::{Error, Result, check_range};
@@ -107,7 +107,7 @@ impl Importance {
         let even = evenly_lit(scene, emitter, params)?;
         let world = World::build(Arc::new(even), job.part(0.0, 0.1))?;
         let points = Sampler::new(scene, goal.geometry, goal.quantity)?;
-        let bins = Bins::new(&world, emitter, Division::Cells { width: params.width, height: params.height });
+        let bins = Bins::new(&world, emitter, Partition::Cells { width: params.width, height: params.height });
         let mut batches = Batches::new(&world, &points, bins, tracing.seed)?;
         let stop = Stop::new(tracing);
         let mut growth = f64::INFINITY;
@@ -199,7 +199,7 @@ impl Importance {
             check_range("target", channel, 0.0, f32::MAX)?;
         }
         let (response, background) = (response.measured.clone(), self.background.clone());
-        let measured = Measured { response, background, pairs: None, paths: self.paths };
+        let measured = BatchMeasurements { response, background, pairs: None, paths: self.paths };
         solve::run(&measured, target.as_dvec3(), [Constraint::Exactly; 3])
     }
 

@@ -60,7 +60,7 @@ mod tests;
 use crate::error::{Result, check_range};
 use crate::job::Job;
 use crate::render::World;
-use bins::{Bins, Division};
+use bins::{Bins, Partition};
 use glam::Vec3;
 use transport::{Batches, Stop};
 
@@ -86,7 +86,7 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
     }
     let scene = input.world.scene();
     let points = target::Sampler::new(scene, TargetGeometry::Surface(input.target_triangles), params.quantity)?;
-    let bins = Bins::new(input.world, input.emitter, Division::Whole);
+    let bins = Bins::new(input.world, input.emitter, Partition::Whole);
     let mut batches = Batches::new(input.world, &points, bins, params.seed)?;
     if params.fit == Fit::LeastSquares {
         batches = batches.in_pairs();
@@ -108,9 +108,9 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Solution> {
 }
 
 /// Returns the response of the target to the whole emission, in batches.
-fn whole(batches: &Batches, fit: Fit) -> solve::Measured {
+fn whole(batches: &Batches, fit: Fit) -> solve::BatchMeasurements {
     let means = batches.means();
-    solve::Measured {
+    solve::BatchMeasurements {
         response: means.iter().map(|m| m.bins[0]).collect(),
         background: means.iter().map(|m| m.others).collect(),
         pairs: (fit == Fit::LeastSquares).then(|| means.iter().map(|m| m.pairs).collect()),

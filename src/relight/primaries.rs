@@ -5,7 +5,7 @@
 //! ([`super::bounded`]). Among mixtures of equal colour, the regularisation selects the one with the smallest sum of
 //! squared drives, which spreads the load.
 
-use super::bounded::Problem;
+use super::bounded::BoundedLeastSquares;
 use crate::error::{Error, Result, check_range};
 use crate::image::colour;
 use glam::DVec3;
@@ -60,7 +60,7 @@ pub fn mix_primaries(primaries: &[DVec3], max_drive: f64, wanted: DVec3) -> Resu
     let matrix: Vec<f64> = (0..3).flat_map(|c| primaries.iter().map(move |p| p[c])).collect();
     let squares: f64 = matrix.iter().map(|a| a * a).sum();
     let (preferred, upper) = (vec![0.0; primaries.len()], vec![max_drive; primaries.len()]);
-    let problem = Problem {
+    let problem = BoundedLeastSquares {
         matrix: &matrix,
         right: &wanted.to_array(),
         regularisation: REGULARISATION * squares / 3.0,

@@ -1,6 +1,6 @@
 //! Computes the responses of several targets to each of many lamps, from one set of paths per target.
 
-use super::bins::{Bins, Division};
+use super::bins::{Bins, Partition};
 use super::emission_lamps::EmissionLamps;
 use super::estimate::{BATCHES, STUDENT_T, mean, standard_error};
 use super::params::{Params, Quantity, TargetGeometry};
@@ -123,7 +123,7 @@ pub fn lamp_responses(
         goals.iter().map(|goal| Sampler::new(scene, goal.geometry, goal.quantity)).collect::<Result<_>>()?;
     let mut batches: Vec<Batches> = samplers
         .iter()
-        .map(|points| Batches::new(world, points, Bins::new(world, emitter, Division::Lamps(lamps)), params.seed))
+        .map(|points| Batches::new(world, points, Bins::new(world, emitter, Partition::Lamps(lamps)), params.seed))
         .collect::<Result<_>>()?;
     let stop = Stop::new(params);
     let mut growth = f64::INFINITY;

@@ -11,7 +11,7 @@
 //! The method ends after finitely many steps (Sun 1997, "On piecewise quadratic Newton and trust region problems"), in
 //! practice after a few.
 
-use super::bounded::{self, dot};
+use super::bounded::{BoundedLeastSquares, dot};
 use super::line_search::Slope;
 use crate::error::{Error, ErrorKind, Result};
 
@@ -38,7 +38,7 @@ impl Constraint {
     }
 }
 
-pub(super) struct Problem<'a> {
+pub(super) struct OneSidedLeastSquares<'a> {
     /// The coefficients `a` of the terms, row by row.
     pub matrix: &'a [f64],
     pub right: &'a [f64],
@@ -57,7 +57,7 @@ const MAX_STEPS: usize = 200;
 /// A term keeps its state (active or not) if its value equals its limit up to this relative difference. [rounding]
 const ROUNDING: f64 = 1e-12;
 
-impl Problem<'_> {
+impl OneSidedLeastSquares<'_> {
     /// Returns the solution `x`.
     ///
     /// # Errors
@@ -113,12 +113,12 @@ impl Problem<'_> {
     fn solve_active(&self, active: &[bool], regularisation: f64) -> Result<Vec<f64>> {
         let Self { matrix, right, preferred, upper, .. } = *self;
         if active.iter().all(|is_active| *is_active) {
-            return bounded::Problem { matrix, right, regularisation, preferred, upper }.solve();
+            return BoundedLeastSquares { matrix, right, regularisation, preferred, upper }.solve();
         }
         let rows = || (0..right.len()).filter(|&i| active[i]);
         let matrix: Vec<f64> = rows().flat_map(|i| self.row(i).iter().copied()).collect();
         let right: Vec<f64> = rows().map(|i| right[i]).collect();
-        bounded::Problem { matrix: &matrix, right: &right, regularisation, preferred, upper }.solve()
+        BoundedLeastSquares { matrix: &matrix, right: &right, regularisation, preferred, upper }.solve()
     }
 
     /// Returns the position of the function's minimum between two points, in `[0, 1]`, and the derivative at the first
@@ -188,7 +188,9 @@ mod tests {
     fn closed_forms() {
         let solve = |matrix: &[f64], right: &[f64], constraints: &[Constraint], preferred: &[f64]| {
             let upper = vec![FREE; preferred.len()];
-            Problem { matrix, right, constraints, regularisation: 1e-9, preferred, upper: &upper }.solve().unwrap()
+            OneSidedLeastSquares { matrix, right, constraints, regularisation: 1e-9, preferred, upper: &upper }
+                .solve()
+                .unwrap()
         };
         let near = |x: Vec<f64>, expected: &[f64]| {
             assert!(x.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-6), "{x:?}, expected {expected:?}");
@@ -216,7 +218,7 @@ mod tests {
         let (matrix, right) = ([a, a, a, b, b].concat(), [1.07, 0.0, 0.59, 0.81, 1.11]);
         let constraints = [AtLeast, AtMost, AtLeast, AtMost, AtLeast];
         let (preferred, upper) = (&[1.0, 1.0, 0.1], &[1.18, 1.2, 0.1]);
-        let problem = Problem {
+        let problem = OneSidedLeastSquares {
             matrix: &matrix,
             right: &right,
             constraints: &constraints,
@@ -273,7 +275,7 @@ mod tests {
             let upper: Vec<f64> =
                 (0..n).map(|_| if rng.next_f64() < 0.5 { FREE } else { 2.0 * rng.next_f64() }).collect();
             let regularisation = 10f64.powf(-9.0 * rng.next_f64());
-            let problem = Problem {
+            let problem = OneSidedLeastSquares {
                 matrix: &matrix,
                 right: &right,
                 constraints: &constraints,

@@ -9,7 +9,7 @@ use crate::image::colour;
 use glam::DVec3;
 
 /// Measurements of the batches: the target's mean radiance under the emission, and under all other light.
-pub(super) struct Measured {
+pub(super) struct BatchMeasurements {
     pub response: Vec<DVec3>,
     pub background: Vec<DVec3>,
     /// Second moments for a least squares fit over the target's points; `None` for a fit of the mean.
@@ -35,7 +35,7 @@ struct Answer {
     deviations: [f64; BATCHES],
 }
 
-pub(super) fn run(measured: &Measured, target: DVec3, constraint: [Constraint; 3]) -> Result<Solution> {
+pub(super) fn run(measured: &BatchMeasurements, target: DVec3, constraint: [Constraint; 3]) -> Result<Solution> {
     let channels: [Channel; 3] = std::array::from_fn(|c| Channel {
         response: std::array::from_fn(|b| measured.response[b][c]),
         background: std::array::from_fn(|b| measured.background[b][c]),

@@ -93,7 +93,7 @@ impl Aov {
     }
 
     /// Returns the number of f64 values per pixel in which a render in parts (`super::parts`) sums up this attribute by
-    /// [`Surfaces::add_to`].
+    /// [`SurfaceSums::add_to`].
     pub fn sum_count(self) -> usize {
         match self {
             Self::Object | Self::Material => ballot::NUMBERS,
@@ -139,7 +139,7 @@ impl Aov {
 
 /// Sums of all attributes over the primary hits of one pixel.
 #[derive(Clone, Copy, Default)]
-pub struct Surfaces {
+pub struct SurfaceSums {
     pub hits: u32,
     depth: f64,
     distance: f64,
@@ -151,7 +151,7 @@ pub struct Surfaces {
     material: Vote,
 }
 
-impl Surfaces {
+impl SurfaceSums {
     /// Adds a primary hit. `depth` is its distance from the camera along the camera's forward direction, in metres;
     /// `seen.distance` is that along the ray.
     pub fn add(&mut self, world: &World, seen: &PrimaryHit, depth: f32) {

@@ -62,11 +62,11 @@ pub struct Bsdf<'a> {
     normal: Vec3,
     geometric: Vec3,
     /// The layers above the diffuse one; `None` for a purely diffuse BSDF.
-    layers: Option<Layers<'a>>,
+    layers: Option<SpecularLayers<'a>>,
 }
 
 /// The top layer (GGX or mirror), and the light that passes through the material in a straight line.
-struct Layers<'a> {
+struct SpecularLayers<'a> {
     bsdf_params: BsdfParams,
     /// The two tangents of the shading frame; its third axis is the shading normal.
     tangents: [Vec3; 2],
@@ -139,7 +139,7 @@ impl<'a> Bsdf<'a> {
         if !layered {
             return Self { diffuse, normal, geometric, layers: None };
         }
-        let layers = Layers::new(bsdf_params, normal, geometric.dot(wo), wo, table);
+        let layers = SpecularLayers::new(bsdf_params, normal, geometric.dot(wo), wo, table);
         Self { diffuse, normal, geometric, layers: Some(layers) }
     }
 
@@ -171,7 +171,7 @@ impl<'a> Bsdf<'a> {
     pub fn is_shareable(&self) -> bool {
         match &self.layers {
             None => self.diffuse != Vec3::ZERO,
-            Some(Layers { bsdf_params: s, .. }) => {
+            Some(SpecularLayers { bsdf_params: s, .. }) => {
                 let is_rough = s.f90 == 0.0 || s.roughness >= SHAREABLE_ROUGHNESS;
                 is_rough && s.transmission == Vec3::ZERO && s.diffuse + s.f0 != Vec3::ZERO
             }
@@ -233,7 +233,7 @@ impl<'a> Bsdf<'a> {
     }
 }
 
-impl<'a> Layers<'a> {
+impl<'a> SpecularLayers<'a> {
     fn new(bsdf_params: &BsdfParams, normal: Vec3, upright: f32, wo: Vec3, table: Option<&'a AlbedoTable>) -> Self {
         let s = bsdf_params;
         let (t, b) = normal.any_orthonormal_pair();

@@ -1,4 +1,5 @@
-//! Contributions of light paths: which light a contribution comes from, and the trait that receives contributions.
+//! Contributions of light paths: which light a contribution comes from, how bright it is, and the trait that receives
+//! contributions.
 
 use glam::{Vec2, Vec3};
 
@@ -22,4 +23,10 @@ pub trait PathSink {
     /// Adds a contribution. `importance` is the product of all factors except the emission: throughput × mis_weight /
     /// pdf.
     fn add(&mut self, source: LightSource, importance: Vec3, emission: Vec3);
+}
+
+/// Returns the mean of the channels. Light sampling uses this value as brightness, since it is positive wherever any
+/// channel is positive.
+pub fn mean_channel(v: Vec3) -> f32 {
+    v.element_sum() / 3.0
 }

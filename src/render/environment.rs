@@ -1,7 +1,7 @@
 //! Environment light: its radiance by direction, and importance sampling of directions towards it.
 
+use super::contribution::mean_channel;
 use super::distribution::Distribution;
-use super::emissive::mean_channel;
 use crate::error::Result;
 use crate::image::Image;
 use crate::scene::Environment;

@@ -69,7 +69,7 @@ pub struct Output {
 const BATCHES: usize = 16;
 /// The shape of the luminous opening is chosen by the directions in which at least this share of the largest luminous
 /// area is seen. In other directions, a shade or the back of a flat lamp hides it. [convention]
-const MIN_SEEN: f64 = 0.9;
+const MIN_LUMINOUS_SHARE: f64 = 0.9;
 /// Sides of the box around the emitting parts that are shorter than this share of its longest side count as 0.
 /// [rounding]
 const FLAT: f64 = 1e-5;
@@ -141,12 +141,12 @@ fn local([c, gamma]: [f64; 2]) -> DVec3 {
 
 /// A box in the coordinates of the luminaire: along C = 0, C = 90 and the axis, from the origin of the world.
 #[derive(Clone, Copy)]
-struct Extent {
+struct LuminaireBox {
     low: DVec3,
     high: DVec3,
 }
 
-impl Extent {
+impl LuminaireBox {
     fn of(points: impl Iterator<Item = DVec3>) -> Self {
         let none = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
         points.fold(none, |e, p| Self { low: e.low.min(p), high: e.high.max(p) })
@@ -167,10 +167,10 @@ struct Goniometer<'a> {
     params: &'a Params,
     /// Unit directions in the scene: of C = 0°, of C = 90° and of the axis (γ = 0°).
     frame: [DVec3; 3],
-    extent: Extent,
+    extent: LuminaireBox,
     opening: Opening,
     /// The box around the parts that emit.
-    emitting: Extent,
+    emitting: LuminaireBox,
 }
 
 /// The light in one direction.
@@ -188,12 +188,13 @@ impl<'a> Goniometer<'a> {
         let meshes = &world.scene().meshes;
         let corners =
             meshes.iter().flat_map(|mesh| mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize]));
-        let extent = Extent::of(corners.map(|p| in_frame(world.from_scene(p))));
+        let extent = LuminaireBox::of(corners.map(|p| in_frame(world.from_scene(p))));
         // The boxes of the pieces leave out the dark texels, but only the corners know the directions of the frame.
         let lights = world.lights();
-        let of_corners = Extent::of(lights.emitters.emitters.iter().flat_map(|e| e.corners).map(in_frame));
-        let of_pieces = Extent::of(lights.piece_corners().map(in_frame));
-        let emitting = Extent { low: of_corners.low.max(of_pieces.low), high: of_corners.high.min(of_pieces.high) };
+        let of_corners = LuminaireBox::of(lights.emitters.emitters.iter().flat_map(|e| e.corners).map(in_frame));
+        let of_pieces = LuminaireBox::of(lights.piece_corners().map(in_frame));
+        let emitting =
+            LuminaireBox { low: of_corners.low.max(of_pieces.low), high: of_corners.high.min(of_pieces.high) };
         match Opening::new(extent.size().to_array(), None) {
             Some(opening) if lights.pieces() > 0 => Ok(Self { world, params, frame, extent, opening, emitting }),
             _ => Err(Error::degenerate("none of the meshes emits light; choose the meshes of a lamp")),
@@ -210,7 +211,7 @@ impl<'a> Goniometer<'a> {
         let faces = self.opening.faces(direction);
         let areas: Vec<f64> = faces.iter().map(|face| face.projected_area(direction)).collect();
         let area: f64 = areas.iter().sum();
-        let reach = direction * self.extent.size().length();
+        let offset = direction * self.extent.size().length();
         let per_batch = self.params.samples.div_ceil(BATCHES as u32);
         let (mut batches, mut luminous) = ([0.0; BATCHES], 0u64);
         for (batch, estimate) in batches.iter_mut().enumerate().filter(|_| area > 0.0) {
@@ -229,7 +230,7 @@ impl<'a> Goniometer<'a> {
                     target < 0.0
                 });
                 let face = &faces[face.unwrap_or(faces.len() - 1)];
-                let start = face.point([0, 1].map(|k| place.fine(k))) + self.extent.centre() + reach;
+                let start = face.point([0, 1].map(|k| place.fine(k))) + self.extent.centre() + offset;
                 let ray = Ray::new(self.in_world(start).as_vec3(), -self.in_world(direction).as_vec3());
                 let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: None };
                 observer.scattered = false;
@@ -292,7 +293,10 @@ impl<'a> Goniometer<'a> {
         let largest = measured.iter().map(|found| found.luminous_area).fold(0.0, f64::max);
         let misfit = |shape: &[f64; 3]| -> f64 {
             let Some(opening) = Opening::new(*shape, None) else { return f64::INFINITY };
-            let seen = directions.iter().zip(measured).filter(|(_, found)| found.luminous_area >= MIN_SEEN * largest);
+            let seen = directions
+                .iter()
+                .zip(measured)
+                .filter(|(_, found)| found.luminous_area >= MIN_LUMINOUS_SHARE * largest);
             seen.map(|(angles, found)| (opening.projected_area(local(*angles)) - found.luminous_area).powi(2)).sum()
         };
         let best = shapes.iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b)));

@@ -4,7 +4,7 @@
 //! Layers use the paths of the main image and do not change the main image by a single bit. A recorder sums the paths
 //! of a pass in f64. The totals of a pixel are in f32 and grow from pass to pass.
 
-use super::aov::{Aov, Surfaces};
+use super::aov::{Aov, SurfaceSums};
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;
 use super::lpe::{Automaton, EmitterAs, Expression, PathTracker};
@@ -164,7 +164,7 @@ impl<'a> Layers<'a> {
             beauty: Vec3::ZERO,
             tracker: PathTracker::new(&self.automaton),
             sums: vec![DVec3::ZERO; self.automaton.lists().len()],
-            surfaces: Surfaces::default(),
+            surfaces: SurfaceSums::default(),
         }
     }
 
@@ -229,7 +229,7 @@ pub struct Recorder<'a> {
     /// Sums of the light of the pixel's paths. Each list in [`Automaton::lists`] has a sum: the light that matches
     /// exactly the expressions on the list.
     sums: Vec<DVec3>,
-    surfaces: Surfaces,
+    surfaces: SurfaceSums,
 }
 
 impl Recorder<'_> {
@@ -273,7 +273,7 @@ impl Recorder<'_> {
                 (totals, rest) = rest.split_at_mut(aov.total_count());
                 self.surfaces.add_to_totals(*aov, totals);
             }
-            self.surfaces = Surfaces::default();
+            self.surfaces = SurfaceSums::default();
         }
     }
 
@@ -300,7 +300,7 @@ impl Recorder<'_> {
                 (total, rest) = rest.split_at_mut(aov.sum_count());
                 self.surfaces.add_to(*aov, total);
             }
-            self.surfaces = Surfaces::default();
+            self.surfaces = SurfaceSums::default();
         }
     }
 }

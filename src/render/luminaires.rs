@@ -5,8 +5,8 @@
 //! the near field is that of a uniform surface. Faces reflect no light: the measured intensity contains all light that
 //! leaves them in a dark room.
 
+use super::bounds::{Bounds, CONE_MARGIN};
 use super::facet;
-use super::light::bounds::Bounds;
 use super::measured::Measured;
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
@@ -50,15 +50,15 @@ pub struct Luminaires {
     /// from points. Empty if no light has faces.
     pub meshes: Vec<Mesh>,
     /// The luminaires with faces.
-    pub sources: Vec<Source>,
+    pub sources: Vec<FaceLuminaire>,
 }
 
 /// A luminaire with faces.
-pub struct Source {
+pub struct FaceLuminaire {
     /// Index of the luminaire among the lights of the scene.
     pub light: usize,
     pub emission: FaceEmission,
-    shape: Arc<Shape>,
+    shape: Arc<LuminaireShape>,
     /// Position of the luminaire in world coordinates.
     position: DVec3,
     /// Unit directions in the scene: of C = 0°, of C = 90° and of the luminaire's axis (γ = 0°).
@@ -66,7 +66,7 @@ pub struct Source {
 }
 
 /// The data that all luminaires with the same luminous intensity distribution share.
-struct Shape {
+struct LuminaireShape {
     faces: Faces,
     /// For each patch, the bound on its intensity; `None` for patches that do not emit.
     intensity_bounds: Vec<Option<IntensityBound>>,
@@ -112,7 +112,7 @@ impl Luminaires {
     /// material of the faces.
     pub fn new(scene: &Scene, centre: DVec3, material: usize) -> Result<Self> {
         let mut this = Self::default();
-        let (mut shapes, mut known_gap): (Vec<Option<Arc<Shape>>>, _) = (Vec::new(), None);
+        let (mut shapes, mut known_gap): (Vec<Option<Arc<LuminaireShape>>>, _) = (Vec::new(), None);
         for (light, kind) in scene.lights.iter().enumerate() {
             let PunctualLight::Luminaire { position, axis, c0, colour, distribution, .. } = *kind else { continue };
             let Some(opening) = kind.opening(&scene.distributions) else { continue };
@@ -124,11 +124,11 @@ impl Luminaires {
             shapes.resize(scene.distributions.len(), None);
             let shape = match &shapes[distribution] {
                 Some(shape) => shape.clone(),
-                None => Arc::new(Shape::new(scene, distribution, &opening, gap)),
+                None => Arc::new(LuminaireShape::new(scene, distribution, &opening, gap)),
             };
             shapes[distribution] = Some(shape.clone());
             let frame = [c0, c90(axis, c0), axis].map(|v| v.as_dvec3());
-            this.sources.push(Source { light, emission, shape, position, frame });
+            this.sources.push(FaceLuminaire { light, emission, shape, position, frame });
         }
         if !this.sources.is_empty() {
             this.meshes = try_with_capacity(scene.lights.len())?;
@@ -148,7 +148,7 @@ fn gap(scene: &Scene, centre: DVec3) -> f64 {
     GAP.max(largest.min(f64::from(facet::MAX_FREE_COORDINATE)) * GAP_OFFSETS * f64::from(facet::OFFSET))
 }
 
-impl Source {
+impl FaceLuminaire {
     fn in_world(&self, local: DVec3) -> DVec3 {
         self.position + self.frame[0] * local.x + self.frame[1] * local.y + self.frame[2] * local.z
     }
@@ -210,7 +210,7 @@ impl Source {
     }
 }
 
-impl Shape {
+impl LuminaireShape {
     fn new(scene: &Scene, distribution: usize, opening: &Opening, gap: f64) -> Self {
         let luminaire = &scene.distributions[distribution];
         let (low, high) = (luminaire.min_gamma(), luminaire.max_gamma());
@@ -263,8 +263,7 @@ impl IntensityBound {
             _ => 90.0,
         };
         if is_flat && (luminance * area > MAX_COSINE_EXCESS * peak || widest < NARROW) {
-            // Widen the cone slightly, to allow for rounding.
-            Self::Cone { peak, angle: widest.to_radians() + 0.01 }
+            Self::Cone { peak, angle: widest.to_radians() + CONE_MARGIN }
         } else {
             Self::Cosine(luminance * area)
         }

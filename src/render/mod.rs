@@ -26,6 +26,7 @@
 
 mod aov;
 mod ballot;
+mod bounds;
 mod bsdf;
 mod compiled_material;
 mod contribution;

@@ -4,11 +4,12 @@
 //! Clear panes are not vertices for MIS: they attenuate shadow rays without blocking them, and a path that passes a
 //! pane keeps the pdf of the vertex before it. Contributions are not clamped, so the estimate is unbiased.
 
+use super::bounds::Receiver;
 use super::bsdf::{Bsdf, BsdfSample, Lobes, ScatterKind};
 use super::contribution::{LightSource, PathSink};
 use super::environment;
 use super::facet::NONE;
-use super::light::{LightEnd, LightSample, Receiver};
+use super::light::{LightEnd, LightSample};
 use super::sampler::Sampler;
 use super::vertex::Vertex;
 use super::world::{Pane, World};

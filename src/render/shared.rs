@@ -11,8 +11,9 @@
 //! Primary and secondary vertices must be non-specular, since a mirror shows each pixel a different surface. Paths
 //! with other vertices are traced alone.
 
+use super::bounds::Receiver;
 use super::bsdf::{Bsdf, Lobes, ScatterKind};
-use super::light::{LightSample, Receiver};
+use super::light::LightSample;
 use super::path::{self, Observer, PathLength, PathSegment, PrimaryHit, Strategy};
 use super::sampler::Sampler;
 use super::vertex::{Surface, Vertex};

@@ -5,7 +5,7 @@ use super::emissive::Emitters;
 use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
 use super::light::{LampVisibility, Lights};
-use super::luminaires::{Luminaires, Source};
+use super::luminaires::{FaceLuminaire, Luminaires};
 use super::requirements::{self, Requirements};
 use super::texture_context::TextureContext;
 use super::vicinity::Vicinity;
@@ -440,7 +440,7 @@ struct Triangles {
 
 impl Triangles {
     /// Numbers the triangles of all meshes, and makes their coordinates relative to the centre.
-    fn number(scene: &Scene, faces: &[Mesh], sources: &[Source], centre: DVec3, job: Job) -> Result<Self> {
+    fn number(scene: &Scene, faces: &[Mesh], sources: &[FaceLuminaire], centre: DVec3, job: Job) -> Result<Self> {
         let count: usize = scene.meshes.iter().chain(faces).map(|m| m.triangles.len()).sum();
         if count >= 1 << 31 {
             return Err(Error::argument(format!("scene has {count} triangles; at most 2^31 - 1 are allowed")));

@@ -7,7 +7,7 @@ use crate::simd::widest;
 
 /// Variance that is added to each feature of a class, in standardised units. It gives a class a standard deviation of
 /// at least 0.1 along each feature. For comparison, the samples of both classes together have a standard deviation of
-/// at most 1. No figure changes between half and twice this value. [bench segment:masks]
+/// at most 1. [bench segment:masks]
 const MIN_VARIANCE: f64 = 0.01;
 /// The ellipsoid of a class reaches to this percentile of its samples' Mahalanobis distances from the centre, but at
 /// least to the distance 1.

@@ -13,9 +13,15 @@ use glam::DVec2;
 const MIN_MARKS: usize = 6;
 /// Maximum distance between a candidate and the position that a map predicts for its mark, as a share of `extent` (the
 /// larger distance between opposite corner marks). The first tolerance is for the map through four candidates, the
-/// final one for the least-squares map. No figure changes between half and twice either value. [bench constants:sheet]
+/// final one for the least-squares map. [bench constants:sheet]
 const FIRST_TOLERANCE: f64 = 0.02;
 const FINAL_TOLERANCE: f64 = 0.004;
+
+/// Half-side of the window in which a mark is refined. `WINDOW`: as a share of the mark's radius; the choice is free up
+/// to 1/√2 = 0.7, from which on the corners of the window leave the mark. `MIN_WINDOW`: its minimum in pixels.
+/// [convention]
+const WINDOW: f64 = 0.6;
+const MIN_WINDOW: f64 = 2.0;
 
 pub struct Fit {
     /// Maps pixels of the page to pixels of the photo.
@@ -38,7 +44,7 @@ pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], job: Job) -> Res
         let centre = page.marks[mark];
         let length_in_photo =
             |step: DVec2| found.map.apply(centre + step * page.radius).distance(found.map.apply(centre));
-        let radius = (0.6 * length_in_photo(DVec2::X).min(length_in_photo(DVec2::Y))).max(2.0);
+        let radius = (WINDOW * length_in_photo(DVec2::X).min(length_in_photo(DVec2::Y))).max(MIN_WINDOW);
         if let Some(at) = refine(grey, at, radius) {
             pairs.push((mark, at));
         }

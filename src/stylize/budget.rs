@@ -17,8 +17,7 @@ const SAMPLES: usize = 256;
 
 /// Minimum share of the variance of the sorted errors that a hyperbola must explain. [bench constants:paint]
 const MIN_EXPLAINED: f64 = 0.8;
-/// A curve has a knee only if it runs farther than this below the diagonal. No figure changes between half and twice
-/// this value. [bench constants:paint]
+/// A curve has a knee only if it runs farther than this below the diagonal. [bench constants:paint]
 const MIN_SAG: f64 = 0.01;
 
 /// The hyperbola `1 / (a - b x)`.

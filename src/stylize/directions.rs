@@ -262,7 +262,7 @@ fn grey(pixel: &[f32]) -> f32 {
 /// weight of the normals. `None` if the blocks found by the light alone have similar normals, or if there are too few
 /// blocks.
 fn compare(blocks: &[Block], own: &Block, weight: f32) -> Option<[f64; 3]> {
-    let (mut by_light, mut by_normals) = (Nearest::new(), Nearest::new());
+    let (mut by_light, mut by_normals) = (NearestBlocks::new(), NearestBlocks::new());
     let (mut sum, mut count) = (0.0, 0.0);
     for other in blocks.iter().filter(|b| (0..2).any(|k| b.at[k].abs_diff(own.at[k]) > NEAR)) {
         let (light, normals) = (squares(&own.light, &other.light), squares(&own.normals, &other.normals));
@@ -279,9 +279,9 @@ fn compare(blocks: &[Block], own: &Block, weight: f32) -> Option<[f64; 3]> {
 }
 
 /// The [`FOUND`] nearest blocks so far, in order of distance: for each, the distance and two values to average.
-struct Nearest([(f32, [f32; 2]); FOUND]);
+struct NearestBlocks([(f32, [f32; 2]); FOUND]);
 
-impl Nearest {
+impl NearestBlocks {
     fn new() -> Self {
         Self([(f32::INFINITY, [0.0; 2]); FOUND])
     }

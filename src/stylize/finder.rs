@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::patch::{Domain, Field, KdTree, Means, Search, SearchIteration};
 
-/// Number of patches of the k-d tree that are compared with each patch. Three times this number takes twice the time
-/// and lowers the energy (StyLit, Eq. 3) by one per cent. [bench stylit]
+/// Number of patches of the k-d tree that are compared with each patch; more take longer and lower the energy
+/// (StyLit, Eq. 3). [bench stylit]
 const TRIES: usize = 8;
 
 /// Data that the searches of one iteration share.

@@ -1,8 +1,7 @@
 //! The guides of a frame as the next frame of a sequence needs them: the light to which the paint of each patch was
 //! matched, and the data by which points of surfaces are recognised.
 
-use super::guides::{Channels, MAX_CHANNELS};
-use super::params::MAX_PATCH;
+use super::guides::{Channels, MAX_CHANNELS, MAX_PATCH};
 use crate::error::Result;
 use crate::exec;
 use crate::image::{Comparison, Image, neighbourhood, try_collect, try_vec};

@@ -36,6 +36,9 @@ pub struct Guide<'a> {
 /// channels of an image.
 pub const MAX_CHANNELS: usize = 60;
 
+/// Largest side of a patch of guides in pixels: the largest value of `Params::patch`.
+pub(super) const MAX_PATCH: usize = 33;
+
 /// Guides are similar if they differ by at most this much, as a weighted root mean square of channels in `[0, 1]`.
 /// [bench stylit:autocomplete]
 pub(super) const SIMILAR: f32 = 0.1;

@@ -1,13 +1,10 @@
 //! The inputs and the settings of a stylisation.
 
 use super::guide_record::GuideRecord;
-use super::guides::Guide;
+use super::guides::{Guide, MAX_PATCH};
 use crate::error::{Error, Result, check_range};
 use crate::image::Image;
 use crate::patch::{Field, MAX_SIDE, VoteMode};
-
-/// Largest value of [`Params::patch`].
-pub(super) const MAX_PATCH: usize = 33;
 
 /// The algorithm that searches for nearest patches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
 
-/// Share of the variance to keep. No figure changes between 0.98 and 0.999. [bench constants:paint]
+/// Share of the variance to keep. [bench constants:paint]
 const KEPT_VARIANCE: f64 = 0.995;
 /// Maximum number of components: together with three colour channels, they fill the eight lanes of a SIMD register.
 const MAX_COMPONENTS: usize = 5;

@@ -15,8 +15,7 @@
 //! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match (`Params::settle`,
 //! `Params::seam`; not in the paper). It does so if the continued match is closer than its own, or if avoiding the
 //! seam outweighs the greater distance. This step searches for no new matches, so the result uses as much of the
-//! exemplar as before, but in larger pieces. On the pair in `tests/real_stylize.rs` it lowers the energy (StyLit, Eq.
-//! 3) to a third and keeps more of the texture.
+//! exemplar as before, but in larger pieces (docs/notes/stylize.md has its effect on the energy).
 //!
 //! Each pass starts from the matches of the previous pass. An exemplar patch whose target has been taken searches anew
 //! around that target; all other exemplar patches keep their matches.
@@ -42,8 +41,8 @@ pub struct PassReport {
     pub coverage: f64,
 }
 
-/// The passes end after the first pass that matches less than this share of the wanted target patches. No figure
-/// changes between half and twice this value. [bench constants:paint]
+/// The passes end after the first pass that matches less than this share of the wanted target patches.
+/// [bench constants:paint]
 const MIN_GAIN: f64 = 0.005;
 
 /// Matches every wanted target patch. `field` holds the matches of the previous iteration, which start the search, and

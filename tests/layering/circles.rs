@@ -1,4 +1,5 @@
-//! Finds circles of files inside a module of `src`: files that use each other, directly or through further files.
+//! Finds circles of files inside a module of `src`: files that use each other, directly or through further files; and
+//! circles of folders, in which each folder counts as a whole.
 //!
 //! A file uses another if it names an item that is defined there, in a `use` or in a path. A name that a file only
 //! re-exports (`pub use`) belongs to the file that defines it. Re-exports and unit tests do not count as uses.
@@ -18,19 +19,48 @@ struct Module {
 /// Modules by path, such as `image::tiff`; the path of the crate itself is "".
 type Modules = BTreeMap<String, Module>;
 
+/// For each module or folder the ones that it uses, without itself.
+type Uses = BTreeMap<String, BTreeSet<String>>;
+
 /// Returns the sets of modules that use each other. Each source is a path below `src` and the text of the file.
 pub fn circles(sources: &[(String, String)]) -> Vec<Vec<String>> {
+    circles_of(&uses(sources)).into_iter().collect()
+}
+
+/// Returns the sets of folders and files of one folder that use each other, if each subfolder counts as a whole.
+pub fn folder_circles(sources: &[(String, String)]) -> Vec<Vec<String>> {
+    // The folders by their paths, such as `image`, each with the uses between its children.
+    let mut folders: BTreeMap<String, Uses> = BTreeMap::new();
+    for (from, used) in uses(sources) {
+        for to in used {
+            let (a, b): (Vec<&str>, Vec<&str>) = (from.split("::").collect(), to.split("::").collect());
+            let common = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
+            // The module of the folder itself, `mod.rs`, is none of its children.
+            if common < a.len() && common < b.len() {
+                let folder = folders.entry(a[..common].join("::")).or_default();
+                let [child, other] = [a, b].map(|path| path[..=common].join("::"));
+                folder.entry(other.clone()).or_default();
+                folder.entry(child).or_default().insert(other);
+            }
+        }
+    }
+    folders.values().flat_map(circles_of).collect()
+}
+
+/// What each module uses.
+fn uses(sources: &[(String, String)]) -> Uses {
     let modules: Modules =
         sources.iter().filter(|(path, _)| !path.contains("tests")).map(|(p, text)| (name(p), parse(text))).collect();
-    let uses: BTreeMap<&str, BTreeSet<String>> =
-        modules.keys().map(|m| (m.as_str(), used_by(m, &modules).into_iter().filter(|u| u != m).collect())).collect();
-    // A module is in a circle with all modules that it reaches and that reach it.
-    let reach: BTreeMap<&str, BTreeSet<&str>> = uses.keys().map(|&m| (m, reached(m, &uses))).collect();
+    modules.keys().map(|m| (m.clone(), used_by(m, &modules).into_iter().filter(|u| u != m).collect())).collect()
+}
+
+/// A module is in a circle with all modules that it reaches and that reach it.
+fn circles_of(uses: &Uses) -> BTreeSet<Vec<String>> {
+    let reach: BTreeMap<&str, BTreeSet<&str>> = uses.keys().map(|m| (m.as_str(), reached(m, uses))).collect();
     let circle = |m: &str| -> Vec<String> {
         reach[m].iter().filter(|&&o| reach[o].contains(m)).map(|o| (*o).to_string()).collect()
     };
-    let all: BTreeSet<Vec<String>> = uses.keys().map(|m| circle(m)).filter(|c| c.len() > 1).collect();
-    all.into_iter().collect()
+    uses.keys().map(|m| circle(m)).filter(|c| c.len() > 1).collect()
 }
 
 /// The module path of a source file below `src`.
@@ -41,7 +71,7 @@ fn name(path: &str) -> String {
 }
 
 /// The modules that `from` uses, directly or through other modules.
-fn reached<'a>(from: &str, uses: &'a BTreeMap<&str, BTreeSet<String>>) -> BTreeSet<&'a str> {
+fn reached<'a>(from: &str, uses: &'a Uses) -> BTreeSet<&'a str> {
     let mut found = BTreeSet::new();
     let mut open: Vec<&str> = uses[from].iter().map(String::as_str).collect();
     while let Some(module) = open.pop() {

@@ -7,7 +7,7 @@
 use super::bands::Bands;
 use super::draw;
 use super::layer::Layer;
-use super::render::{self, Blend, Lights};
+use super::render::{self, Blend, LightSelection};
 use super::source::{self, TexelSource};
 use super::tile::Tile;
 use super::weights::{Style, Weights};
@@ -156,7 +156,7 @@ impl Composition {
     /// Renders a tile and its coverage without removing crumbs.
     fn render(&self, input: &Input, styles: &[Style], tile: Tile, job: Job) -> Result<(Image, Image)> {
         self.check_exemplars(input, styles)?;
-        self.render_lights(input, styles, tile, Lights::All, job)
+        self.render_lights(input, styles, tile, LightSelection::All, job)
     }
 
     /// Renders a tile and its coverage: either all lights, or only the lights that are copied patch by patch.
@@ -165,7 +165,7 @@ impl Composition {
         input: &Input,
         styles: &[Style],
         tile: Tile,
-        lights: Lights,
+        lights: LightSelection,
         job: Job,
     ) -> Result<(Image, Image)> {
         let inputs = exemplars(input, 1.0, styles);

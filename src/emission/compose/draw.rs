@@ -29,7 +29,7 @@ use std::collections::HashMap;
 /// multiple of the longest lamp's length. [bench constants:lamps]
 const SHARED_SQUARE: f64 = 3.0;
 /// Consider the lamps of the second and all further exemplars. Lamps are dense if more than this share of them overlap
-/// two or more lamps of earlier exemplars. No figure changes between half and twice this value. [bench constants:lamps]
+/// two or more lamps of earlier exemplars. [bench constants:lamps]
 const MIN_DENSE_SHARE: f64 = 0.1;
 
 /// A lamp of an exemplar: its bounding box in texels, and its random number.

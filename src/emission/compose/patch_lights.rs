@@ -5,7 +5,7 @@
 //! last texel in each row. Its outline encloses everything between these two texels, in steps of whole texels.
 
 use super::composition::Composition;
-use super::render::Lights;
+use super::render::LightSelection;
 use super::tile::Tile;
 use super::weights::Style;
 use crate::emission::lamps::coverage;
@@ -43,13 +43,13 @@ pub fn find(composition: &Composition, input: &Input, styles: &[Style], job: Job
             height: (y + rows + MARGIN_ROWS).min(composition.height) - top,
         };
         let (texture, coverage) =
-            composition.render_lights(input, styles, tile, Lights::OfPatches, job.part(0.0, 0.0))?;
+            composition.render_lights(input, styles, tile, LightSelection::OfPatches, job.part(0.0, 0.0))?;
         let found = components(&coverage)?;
         let first = lights.add(found.list.len());
         let (own, start) = ((y - top) * composition.width, y - top);
         let light = |i: usize| found.labels[own + i].checked_sub(1).map(|k| first + k);
         let coverage = |i: usize| coverage.data[i];
-        let shown = coverage::Lights::new(&found, &coverage, composition.width, tile.height)?;
+        let shown = coverage::LampCoverage::new(&found, &coverage, composition.width, tile.height)?;
         for i in 0..rows * composition.width {
             if let Some(k) = light(i) {
                 let (u, v) = (i % composition.width, i / composition.width);

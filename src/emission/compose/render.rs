@@ -25,7 +25,7 @@ const BELOW_HALF: f32 = 0.5 - f32::EPSILON;
 
 /// The lights of a composition that are rendered.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Lights {
+pub enum LightSelection {
     All,
     /// Only lights that are copied patch by patch, and only if the texture is not a copied part of the exemplar.
     OfPatches,
@@ -45,7 +45,7 @@ pub fn run(
     sources: &[TexelSource],
     bands: &[Bands],
     tile: Tile,
-    lights: Lights,
+    lights: LightSelection,
     job: Job,
 ) -> Result<(Image, Image)> {
     let Tile { width, height, .. } = tile;
@@ -57,12 +57,12 @@ pub fn run(
         let shares = try_vec(width, 0f32)?;
         let mut row = Row { y: tile.y + row, first: tile.x, colours, coverage, shares };
         for (k, (source, bands)) in sources.iter().zip(bands).enumerate() {
-            if lights == Lights::All {
+            if lights == LightSelection::All {
                 row.add_lamps(source, bands);
             }
             let has_more = match lights {
-                Lights::All => source.layer.any_copied_by_pixel(),
-                Lights::OfPatches => source.layer.follows_patches(),
+                LightSelection::All => source.layer.any_copied_by_pixel(),
+                LightSelection::OfPatches => source.layer.follows_patches(),
             };
             if has_more {
                 row.add_patches(source, blend, k);

@@ -14,6 +14,9 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 /// `MIN_SAMPLES`, an edge of the light could not be located to within an eighth of the texel's side. [rounding]
 const MIN_SAMPLES: f64 = 4.0;
 const MAX_SAMPLES: f64 = 16.0;
+/// Samples are interpolated if their spacing, in unwarped pixels, is at most this: less than 1 by more than rounding.
+/// [rounding]
+const MAX_MAGNIFIED_SPACING: f64 = 0.999;
 
 /// Computes the mean colour of every component of the exemplar.
 pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>> {
@@ -88,7 +91,7 @@ impl TexelSource<'_> {
         let n = if scale > 1.0 { scale.ceil().clamp(MIN_SAMPLES, MAX_SAMPLES) } else { 1.0 };
         let spacing = scale / n;
         let corner = self.corner(x, y, shift);
-        let is_magnified = spacing <= 0.999;
+        let is_magnified = spacing <= MAX_MAGNIFIED_SPACING;
         let samples = (0..(n * n) as usize).map(|i| {
             let step = DVec2::new((i % n as usize) as f64 + 0.5, (i / n as usize) as f64 + 0.5);
             let p = corner + step * spacing;

@@ -38,7 +38,7 @@ pub fn join(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
         return Ok(None);
     }
     job.check()?;
-    let lights = Lights::new(plane, &found)?;
+    let lights = LightPairs::new(plane, &found)?;
     let mut joined = None;
     for pair in lights.pairs.iter().filter(|pair| lights.are_one_lamp(pair)) {
         let light = match &mut joined {
@@ -62,7 +62,7 @@ struct Pair {
     is_bar: bool,
 }
 
-struct Lights {
+struct LightPairs {
     sizes: Vec<MeasuredLamp>,
     /// Whether each light is rectangular ([`MIN_COVERED`]) and counts as whole, that is, the border does not cut it.
     is_lamp: Vec<bool>,
@@ -71,7 +71,7 @@ struct Lights {
     pairs_of: Vec<usize>,
 }
 
-impl Lights {
+impl LightPairs {
     fn new(plane: &LitPlane, found: &Components) -> Result<Self> {
         let measured = |k: usize, lamp: &Component| MeasuredLamp::new(k, lamp, lamp.area as f64, plane.to_photo);
         let mut pairs = Vec::new();

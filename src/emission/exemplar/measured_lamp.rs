@@ -15,7 +15,7 @@ pub const MAX_SIDE_DIFFERENCE: f64 = 0.2;
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
 /// As [`MAX_SIDE_DIFFERENCE`], but for two panes of a luminous ceiling: windows of two widths may lie side by side.
-/// Those of `peabody_atrium_up` differ by 19 %. [bench photos:real]
+/// [bench photos:real]
 pub const MAX_PANE_DIFFERENCE: f64 = 0.15;
 /// A wider tolerance, for lamps that lie at one site of a lattice and are therefore probably of one kind.
 /// `MAX_SITE_DIFFERENCE`: maximum difference of a side, as a share of the longer one. `SITE_NOISE`: measurement error

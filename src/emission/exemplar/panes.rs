@@ -43,7 +43,7 @@ pub fn part(plane: &LitPlane, job: Job) -> Result<Option<Image>> {
     }
     for rows in between(&rows, light.height) {
         for columns in between(&columns, light.width) {
-            fill(&Cell { plane, luminances: &luminances, columns, rows: rows.clone() }, &mut light);
+            fill(&PaneCandidate { plane, luminances: &luminances, columns, rows: rows.clone() }, &mut light);
         }
     }
     Ok(Some(light))
@@ -81,14 +81,14 @@ fn between(bars: &[Bar], size: usize) -> Vec<Range<usize>> {
 }
 
 /// A rectangle between bars, which may be a pane, given by its columns and rows.
-struct Cell<'a> {
+struct PaneCandidate<'a> {
     plane: &'a LitPlane<'a>,
     luminances: &'a [f32],
     columns: Range<usize>,
     rows: Range<usize>,
 }
 
-impl Cell<'_> {
+impl PaneCandidate<'_> {
     fn pixels(&self) -> impl Iterator<Item = usize> + '_ {
         let width = self.plane.light.width;
         let all = self.rows.clone().flat_map(move |y| self.columns.clone().map(move |x| y * width + x));
@@ -98,15 +98,15 @@ impl Cell<'_> {
 
 /// If a rectangle between bars holds enough light, makes it one pane: fills the lead strips in it, and adds bright
 /// parts that the mask left out.
-fn fill(cell: &Cell, light: &mut Image) {
-    let lit: Vec<usize> = cell.pixels().filter(|&i| light.data[i] >= super::LIT).collect();
-    if lit.is_empty() || (lit.len() as f64) < MIN_LIT_SHARE * cell.pixels().count() as f64 {
+fn fill(candidate: &PaneCandidate, light: &mut Image) {
+    let lit: Vec<usize> = candidate.pixels().filter(|&i| light.data[i] >= super::LIT).collect();
+    if lit.is_empty() || (lit.len() as f64) < MIN_LIT_SHARE * candidate.pixels().count() as f64 {
         return;
     }
 
     // Fill the lead strips along rows and columns.
     let width = light.width;
-    let (columns, rows) = (cell.columns.clone(), cell.rows.clone());
+    let (columns, rows) = (candidate.columns.clone(), candidate.rows.clone());
     rows.clone().for_each(|y| close(light, (y * width + columns.start, 1, columns.len())));
     columns.clone().for_each(|x| close(light, (rows.start * width + x, width, rows.len())));
 
@@ -116,17 +116,17 @@ fn fill(cell: &Cell, light: &mut Image) {
         positions().min().unwrap_or(0)..=positions().max().unwrap_or(0)
     };
     let (left, top) = (range(|i, width| i % width), range(|i, width| i / width));
-    let mut luminances: Vec<f32> = lit.iter().map(|&i| cell.luminances[i]).collect();
+    let mut luminances: Vec<f32> = lit.iter().map(|&i| candidate.luminances[i]).collect();
     let middle = luminances.len() / 2;
     let min_luminance = MIN_RELATIVE_LUMINANCE * *luminances.select_nth_unstable_by(middle, f32::total_cmp).1;
-    let is_bright = |&i: &usize| cell.luminances[i] >= min_luminance;
+    let is_bright = |&i: &usize| candidate.luminances[i] >= min_luminance;
     let is_inside = |&i: &usize| left.contains(&(i % width)) && top.contains(&(i / width));
-    cell.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
+    candidate.pixels().filter(is_bright).filter(is_inside).for_each(|i| light.data[i] = light.data[i].max(1.0));
 }
 
-/// Fills the short gaps between lit pixels of a line: a row or a column of a cell. A gap is short if it takes at most
-/// the share [`MAX_LEADING_SHARE`] of the line. `start` is the index of the line's first pixel, `step` the difference
-/// to the index of the next pixel, and `count` the number of pixels.
+/// Fills the short gaps between lit pixels of a line: a row or a column of a candidate. A gap is short if it takes at
+/// most the share [`MAX_LEADING_SHARE`] of the line. `start` is the index of the line's first pixel, `step` the
+/// difference to the index of the next pixel, and `count` the number of pixels.
 fn close(light: &mut Image, (start, step, count): (usize, usize, usize)) {
     let widest = (count as f64 * MAX_LEADING_SHARE) as usize;
     let mut last = None;

@@ -12,7 +12,7 @@ const AROUND: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-
 pub type Coverage<'a> = &'a dyn Fn(usize) -> f32;
 
 /// The lamps of a texture, with the coverage of each texel.
-pub struct Lights<'a> {
+pub struct LampCoverage<'a> {
     width: usize,
     height: usize,
     /// For each texel, the number of its lamp, or 0.
@@ -23,7 +23,7 @@ pub struct Lights<'a> {
     full: Vec<f32>,
 }
 
-impl<'a> Lights<'a> {
+impl<'a> LampCoverage<'a> {
     pub fn new(found: &'a Components, coverage: Coverage<'a>, width: usize, height: usize) -> Result<Self> {
         let mut full = try_vec(found.list.len() + 1, 0f32)?;
         for (i, &label) in found.labels.iter().enumerate().filter(|(_, label)| **label != 0) {

@@ -12,8 +12,8 @@ use crate::geometry::polygon;
 use glam::{DVec2, Vec2Swizzles};
 use std::collections::BTreeMap;
 
-/// Maximum relative difference in area, and in each side, between two lamps of one kind. No figure changes between half
-/// and twice this value. [bench emission:real]
+/// Maximum relative difference in area, and in each side, between two lamps of one kind.
+/// [bench emission:real]
 const MAX_DIFFERENCE: f64 = 0.25;
 /// A lamp fills a share of its smallest enclosing rectangle. Between two lamps of one kind, this share differs by at
 /// most this value. It is about half the difference between a square and a disc, 1 - π/4 = 0.21: from 0.21 on, they

@@ -1,6 +1,6 @@
 //! Lists the lamps of a texture for lighting software: centre, size, colour, flux share, outline and kind.
 
-use super::coverage::{Coverage, Lights};
+use super::coverage::{Coverage, LampCoverage};
 use super::kinds;
 use super::luminaire::Luminaire;
 use super::outline::Ring;
@@ -19,7 +19,7 @@ pub fn components(mask: &Image) -> Result<Components> {
 /// Measures each component in `found`, the connected lights of `texture`, and returns it as a luminaire. The order is
 /// that of `found`.
 pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -> Result<Vec<Luminaire>> {
-    let lights = Lights::new(found, coverage, texture.width, texture.height)?;
+    let lights = LampCoverage::new(found, coverage, texture.width, texture.height)?;
     let lamps: Result<Vec<Luminaire>> = (1..)
         .zip(&found.list)
         .map(|(label, lamp)| {
@@ -45,7 +45,7 @@ pub fn number_kinds(lamps: &mut [Luminaire], texture: &Image) {
 
 /// Measures the lamp with number `label`. Its `flux_share` is provisional: the mean luminance times the number of
 /// texels. The caller divides this product by its sum over all lamps.
-fn measure(label: u32, lamp: &Component, texture: &Image, lights: &Lights) -> Luminaire {
+fn measure(label: u32, lamp: &Component, texture: &Image, lights: &LampCoverage) -> Luminaire {
     let [low, high] = [lamp.min, lamp.max].map(|p| p.map(|v| v as isize));
     let is_in = |at: [isize; 2]| lights.label(at) == Some(label);
 

@@ -28,10 +28,10 @@ const MAX_NARROW_WIDTH: f64 = 2.0;
 ///
 /// - `MIN_SIDE`: minimum length of a side whose direction is used. An end that is off by `TOLERANCE` turns a side of
 ///   this length by 3°, and a shorter side by more.
-/// - `MAX_EXTENDED`: maximum length by which a side is extended. An outline is traced where it crosses the lines between
-///   texel centres. A right-angled corner between sides along the rows and columns misplaces only the crossings of the
-///   texel that holds it. The last correct crossing of a side lies on the centre line of the next row or column, so it
-///   is 0.5 to 1.5 texels away from the corner.
+/// - `MAX_EXTENDED`: maximum length by which a side is extended. An outline is traced where it crosses the lines
+///   between texel centres. A right-angled corner between sides along the rows and columns misplaces only the
+///   crossings of the texel that holds it. The last correct crossing of a side lies on the centre line of the next row
+///   or column, so it is 0.5 to 1.5 texels away from the corner.
 /// - `MAX_BLUNT`: maximum length of the blunt part between two sides. It runs from one such crossing to the other, so
 ///   it is rarely longer than two texels.
 /// - `COS_CORNER`: cosine of 60°. At a corner, the outline must turn by at least 60° from one side to the next. A disc

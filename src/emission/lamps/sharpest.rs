@@ -10,13 +10,11 @@ use std::collections::BTreeMap;
 
 /// Two lamps are similar if their areas, their widths, their heights and their aspect ratios each differ by at most a
 /// relative tolerance. Let A be the number of photo pixels that show the lamp to be replaced. The tolerance is
-/// `DIFFERENCE` + `BLUR_PIXELS` / √A, but at most `MAX_DIFFERENCE`. No figure changes between half and twice this
-/// value. [bench emission:real]
+/// `DIFFERENCE` + `BLUR_PIXELS` / √A, but at most `MAX_DIFFERENCE`. [bench emission:real]
 const DIFFERENCE: f64 = 0.25;
 
 /// `BLUR_PIXELS`, in photo pixels, allows for blur and bloom, which enlarge a small lamp by a larger share than a large
-/// one. For `MAX_DIFFERENCE`, see [`DIFFERENCE`]. No figure changes between half and twice either value.
-/// [bench emission:real]
+/// one. For `MAX_DIFFERENCE`, see [`DIFFERENCE`]. [bench emission:real]
 const BLUR_PIXELS: f64 = 2.0;
 const MAX_DIFFERENCE: f64 = 0.5;
 

@@ -7,14 +7,14 @@ use glam::DVec2;
 /// Otherwise a shift with few lamps in its overlap would often have the highest correlation by chance. [convention]
 const STANDARD_ERRORS: f32 = 2.0;
 
-/// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis. No
-/// figure changes between 0.8 and 0.99. [bench emission:ceilings]
+/// The pattern counts as unchanging along an axis if the correlation is at least this at all shifts along the axis.
+/// [bench emission:ceilings]
 const MIN_UNCHANGING: f32 = 0.95;
 
 /// A peak counts only if the correlation falls by at least `MIN_FALL.1` within `MIN_FALL.0` pixels on both sides of it.
 /// The fall is measured along x or along y, whichever is closer to the direction of the shift. If the correlation does
-/// not fall, the lights run along this axis without interruption and have no period along it. No figure changes between
-/// half and twice either value. [bench emission:ceilings]
+/// not fall, the lights run along this axis without interruption and have no period along it.
+/// [bench emission:ceilings]
 const MIN_FALL: (isize, f32) = (8, 0.02);
 
 /// A shift that moves lights onto lights, found as a peak of the autocorrelation.

@@ -57,13 +57,13 @@ fn brightness(frame: &Frame) -> f64 {
 }
 
 /// Two neighbours in the order of exposure: their indices, and the ratio of their exposures that the metadata state.
-pub struct Pair {
+pub struct ExposurePair {
     pub short: usize,
     pub long: usize,
     pub stated: Option<f64>,
 }
 
-impl Pair {
+impl ExposurePair {
     /// Decides on the ratio of the exposures from all that is known about it.
     pub fn ratio(&self, measured: Option<Ratio>, params: &Params) -> Result<Ratio> {
         if !params.exposures.is_empty() {

@@ -29,7 +29,7 @@ use crate::image::Image;
 use crate::image::photo::PhotoMetadata;
 use crate::job::Job;
 use combine::{Exposed, Stack};
-use exposures::Pair;
+use exposures::ExposurePair;
 use frame::Frame;
 use noise::Noise;
 use ratio::Ratio;
@@ -148,7 +148,7 @@ fn compare(
         let job = job.part(k as f64 * step, ((k + 1) as f64 * step).min(1.0));
         let [s, l] = [neighbours[0], neighbours[1]];
         let (short, long) = (&frames[s], &frames[l]);
-        let pair = Pair { short: s, long: l, stated: exposures::stated_ratio(&metadata[s], &metadata[l]) };
+        let pair = ExposurePair { short: s, long: l, stated: exposures::stated_ratio(&metadata[s], &metadata[l]) };
         let samples = ratio::samples(short, long, size, job.part(0.0, 0.2))?;
         let ratio = pair.ratio(ratio::measure(&samples, long.clip)?, params)?;
         if !params.keep_moving {

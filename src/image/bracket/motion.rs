@@ -49,7 +49,7 @@ pub fn disagreement(
 ) -> Result<Vec<u8>> {
     // For each pixel: the difference of the exposures, how far it may differ, and the variance of the noise.
     let mut found = Image::new(width, height, 3)?;
-    let mut pair = Pair { short, long, ratio, noise, misalignment: 0.0 };
+    let mut pair = FramePair { short, long, ratio, noise, misalignment: 0.0 };
     pair.misalignment = pair.measured_misalignment([width, height], job.part(0.0, 0.1))?;
     exec::for_rows(&mut found.data, 3 * width, job.part(0.1, 0.6), |y, row| {
         for (x, out) in row.chunks_exact_mut(3).enumerate() {
@@ -67,7 +67,7 @@ pub fn disagreement(
 }
 
 /// Two neighbours in the order of exposure.
-struct Pair<'a> {
+struct FramePair<'a> {
     short: &'a Frame<'a>,
     long: &'a Frame<'a>,
     ratio: f32,
@@ -76,7 +76,7 @@ struct Pair<'a> {
     misalignment: f32,
 }
 
-impl Pair<'_> {
+impl FramePair<'_> {
     /// The difference of the exposures at a pixel, how far it may differ, and the variance of its noise; zeros if
     /// the photos do not show it.
     fn difference(&self, x: usize, y: usize) -> [f32; 3] {
@@ -89,13 +89,13 @@ impl Pair<'_> {
             return [0.0; 3];
         }
         let light = if is_clipped { predicted } else { (s + l) * self.ratio / (1.0 + self.ratio) };
-        let [deviation, scatter] = self.noise.at(light);
+        let [deviation, spread] = self.noise.at(light);
         let difference =
             if is_clipped { PREDICTED * self.long.clip - self.ratio * s_peak } else { l - predicted - deviation };
         let allowed = self.misalignment * self.steps(x, y, [s, l])
             + half_code(self.long, l)
             + self.ratio * half_code(self.short, s);
-        [difference, allowed, scatter * scatter]
+        [difference, allowed, spread * spread]
     }
 
     /// Measures the misalignment: the median difference at edges, relative to the steps of the light there.

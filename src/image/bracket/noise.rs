@@ -12,12 +12,12 @@ const PER_OCTAVE: f32 = 2.0;
 /// A level is measured on at least this many pixels.
 const MIN_PIXELS: usize = 32;
 
-/// Limits of the measured deviation and scatter, relative to the light, so that something that moves is not taken for
+/// Limits of the measured deviation and spread, relative to the light, so that something that moves is not taken for
 /// noise where it covers most pixels of a level. The deviation allows for tone curves that are not those of sRGB. The
-/// scatter is that of a camera that saturates at 500 electrons, as at high speeds, and a part of the light in addition.
+/// spread is that of a camera that saturates at 500 electrons, as at high speeds, and a part of the light in addition.
 /// [convention]
 const MAX_DEVIATION: f32 = 0.2;
-const MAX_SCATTER: f32 = 0.1;
+const MAX_SPREAD: f32 = 0.1;
 const MAX_PHOTON_NOISE: f32 = 1.0 / 500.0;
 
 /// The difference `long - ratio * short` of unmoved pixels, by level: its median and its robust standard deviation,
@@ -36,14 +36,14 @@ impl Noise {
             *out = (values.len() >= MIN_PIXELS).then(|| {
                 let middle = median(values);
                 values.iter_mut().for_each(|v| *v = (*v - middle).abs());
-                let scatter = MAD_TO_SIGMA as f32 * median(values);
-                [middle.clamp(-MAX_DEVIATION, MAX_DEVIATION), scatter]
+                let spread = MAD_TO_SIGMA as f32 * median(values);
+                [middle.clamp(-MAX_DEVIATION, MAX_DEVIATION), spread]
             });
         }
         Ok(Self(std::array::from_fn(|k| {
-            let [deviation, scatter] = nearest(&found, k);
+            let [deviation, spread] = nearest(&found, k);
             let light = (LOWEST + (k as f32 + 0.5) / PER_OCTAVE).exp2();
-            [deviation, scatter.min(MAX_SCATTER.hypot((MAX_PHOTON_NOISE / light).sqrt()))]
+            [deviation, spread.min(MAX_SPREAD.hypot((MAX_PHOTON_NOISE / light).sqrt()))]
         })))
     }
 
@@ -62,16 +62,16 @@ fn level(light: f32) -> usize {
     (((log - LOWEST) * PER_OCTAVE).max(0.0) as usize).min(LEVELS - 1)
 }
 
-/// The values of a level, or else the scatter of the nearest level that was measured, which grows towards darkness as
-/// that of Poisson noise. Without any level, photos may differ by `MAX_SCATTER`.
+/// The values of a level, or else the spread of the nearest level that was measured, which grows towards darkness as
+/// that of Poisson noise. Without any level, photos may differ by `MAX_SPREAD`.
 fn nearest(found: &[Option<[f32; 2]>; LEVELS], level: usize) -> [f32; 2] {
     if let Some(values) = found[level] {
         return values;
     }
     let measured = (0..LEVELS).filter_map(|k| Some((k, found[k]?[1])));
-    measured.min_by_key(|(k, _)| k.abs_diff(level)).map_or([0.0, MAX_SCATTER], |(k, scatter)| {
+    measured.min_by_key(|(k, _)| k.abs_diff(level)).map_or([0.0, MAX_SPREAD], |(k, spread)| {
         let octaves = (k as f32 - level as f32) / PER_OCTAVE;
-        [0.0, scatter * (0.5 * octaves.max(0.0)).exp2()]
+        [0.0, spread * (0.5 * octaves.max(0.0)).exp2()]
     })
 }
 

@@ -4,7 +4,7 @@
 //! sum of the long values divided by that of the short ones. It is unbiased if the pixels are selected by the sum of
 //! their two values: given the sum, each photon fell into the long exposure with the probability r / (1 + r). (A
 //! selection by the values themselves favours those that noise made smaller.) Pixels that do not follow the ratio,
-//! because something moved, get Tukey's weights. The error comes from the scatter between blocks of the photo, so noise
+//! because something moved, get Tukey's weights. The error comes from the spread between blocks of the photo, so noise
 //! that is correlated between neighbours does not make it too small.
 
 use super::frame::Frame;
@@ -32,11 +32,11 @@ const WELL_EXPOSED: [f64; 2] = [0.002, 0.8];
 /// Tukey's constant, in standard deviations: 95 % efficiency for normal noise. [paper §4 of Beaton and Tukey 1974]
 const TUKEY: f64 = 4.685;
 
-/// Standard deviation of normal noise over its median absolute deviation. \[convention\]
+/// Standard deviation of normal noise over its median absolute deviation. [convention]
 pub const MAD_TO_SIGMA: f64 = 1.4826;
 
-/// Smallest scatter, relative to the square root of the values, so that equal photos have weights. [rounding]
-const MIN_SCATTER: f64 = 1e-6;
+/// Smallest spread, relative to the square root of the values, so that equal photos have weights. [rounding]
+const MIN_SPREAD: f64 = 1e-6;
 
 /// Number of steps of the reweighting, which converges by a factor of about 5 per step.
 const STEPS: usize = 8;
@@ -143,7 +143,7 @@ fn reweigh(samples: &[Sample], ratio: f64, sizes: &mut [f64], weights: &mut [[f6
     sizes.iter_mut().zip(samples).for_each(|(size, s)| *size = residual(s).abs());
     let middle = sizes.len() / 2;
     let (_, median, _) = sizes.select_nth_unstable_by(middle, f64::total_cmp);
-    let limit = TUKEY * (MAD_TO_SIGMA * *median).max(MIN_SCATTER);
+    let limit = TUKEY * (MAD_TO_SIGMA * *median).max(MIN_SPREAD);
     for (weight, s) in weights.iter_mut().zip(samples) {
         let z = residual(s) / limit;
         let inside = (1.0 - z * z).max(0.0);
@@ -151,7 +151,7 @@ fn reweigh(samples: &[Sample], ratio: f64, sizes: &mut [f64], weights: &mut [[f6
     }
 }
 
-/// The standard error of the logarithm of the ratio, from the scatter between blocks: the jackknife of an M-estimate,
+/// The standard error of the logarithm of the ratio, from the spread between blocks: the jackknife of an M-estimate,
 /// whose denominator is the sum of the slopes (Huber 1964). `None` if too few blocks have pixels.
 fn error_of(samples: &[Sample], weights: &[[f64; 2]], ratio: f64) -> Option<f64> {
     let mut blocks = [[0.0; 2]; BLOCKS * BLOCKS];
@@ -163,7 +163,7 @@ fn error_of(samples: &[Sample], weights: &[[f64; 2]], ratio: f64) -> Option<f64>
     }
     let count = blocks.iter().filter(|[_, short]| *short != 0.0).count();
     let total: f64 = blocks.iter().map(|[_, short]| short).sum();
-    let scatter: f64 = blocks.iter().map(|[residual, _]| residual * residual).sum();
-    let variance = count as f64 / (count as f64 - 1.0) * scatter / (ratio * total).powi(2);
+    let squares: f64 = blocks.iter().map(|[residual, _]| residual * residual).sum();
+    let variance = count as f64 / (count as f64 - 1.0) * squares / (ratio * total).powi(2);
     (count >= MIN_BLOCKS).then(|| variance.sqrt())
 }

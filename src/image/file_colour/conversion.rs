@@ -13,10 +13,10 @@ use std::sync::Arc;
 /// damage. If the file itself stores a negative component, the converted components of this pixel are only raised to
 /// that value, so that later stages see the damage. Components above 1 are kept.
 #[derive(Clone)]
-pub struct Conversion(Kind);
+pub struct Conversion(ColourTransform);
 
 #[derive(Clone)]
-enum Kind {
+enum ColourTransform {
     /// One transfer curve for grey values.
     Grey(Curve),
     Rgb {
@@ -30,15 +30,15 @@ enum Kind {
 
 impl Conversion {
     pub fn new(curves: [Curve; 3], matrix: DMat3) -> Self {
-        Self(Kind::Rgb { curves: Some(curves), matrix: matrix.as_mat3() })
+        Self(ColourTransform::Rgb { curves: Some(curves), matrix: matrix.as_mat3() })
     }
 
     pub fn grey(curve: Curve) -> Self {
-        Self(Kind::Grey(curve))
+        Self(ColourTransform::Grey(curve))
     }
 
     pub(super) fn linear(matrix: DMat3) -> Self {
-        Self(Kind::Rgb { curves: None, matrix: matrix.as_mat3() })
+        Self(ColourTransform::Rgb { curves: None, matrix: matrix.as_mat3() })
     }
 
     /// Returns the conversion from sRGB-encoded samples.
@@ -48,36 +48,40 @@ impl Conversion {
     }
 
     pub fn tables(to_srgb: Arc<TransformF32Executor>) -> Result<Self> {
-        Ok(Self(Kind::Tables(to_srgb, Curve::srgb()?)))
+        Ok(Self(ColourTransform::Tables(to_srgb, Curve::srgb()?)))
     }
 
     /// Whether a picture with this number of channels can be converted: grey profiles cannot convert colours, nor can
     /// colour tables convert greys. For a grey profile, four channels count as grey with alpha.
     pub fn fits(&self, channels: usize) -> bool {
         match self.0 {
-            Kind::Grey(_) => channels != 3,
-            Kind::Rgb { .. } => true,
-            Kind::Tables(..) => channels >= 3,
+            ColourTransform::Grey(_) => channels != 3,
+            ColourTransform::Rgb { .. } => true,
+            ColourTransform::Tables(..) => channels >= 3,
         }
     }
 
     /// Converts a picture of 1, 3 or 4 channels. The fourth channel is alpha and stays unchanged.
     pub fn apply(&self, image: &mut Image) -> Result<()> {
         match &self.0 {
-            Kind::Rgb { curves, .. } if image.channels < 3 => {
+            ColourTransform::Rgb { curves, .. } if image.channels < 3 => {
                 if let Some([_, curve, _]) = curves {
                     image.data.iter_mut().for_each(|v| *v = curve.at(*v));
                 }
             }
-            Kind::Rgb { curves: Some([r, g, b]), matrix } => each_colour(image, |colour| {
+            ColourTransform::Rgb { curves: Some([r, g, b]), matrix } => each_colour(image, |colour| {
                 within(*matrix * Vec3::new(r.at(colour.x), g.at(colour.y), b.at(colour.z)), colour)
             }),
-            Kind::Rgb { curves: None, matrix } => each_colour(image, |colour| within(*matrix * colour, colour)),
-            Kind::Grey(curve) if image.channels < 3 => image.data.iter_mut().for_each(|v| *v = curve.at(*v)),
+            ColourTransform::Rgb { curves: None, matrix } => {
+                each_colour(image, |colour| within(*matrix * colour, colour))
+            }
+            ColourTransform::Grey(curve) if image.channels < 3 => image.data.iter_mut().for_each(|v| *v = curve.at(*v)),
             // Grey with alpha has three equal channels. Convert each, so that a coloured picture with a wrong profile
             // keeps its colours.
-            Kind::Grey(curve) => each_colour(image, |colour| Vec3::from(colour.to_array().map(|v| curve.at(v)))),
-            Kind::Tables(to_srgb, curve) => apply_tables(image, to_srgb.as_ref(), curve)?,
+            ColourTransform::Grey(curve) => {
+                each_colour(image, |colour| Vec3::from(colour.to_array().map(|v| curve.at(v))))
+            }
+            ColourTransform::Tables(to_srgb, curve) => apply_tables(image, to_srgb.as_ref(), curve)?,
         }
         Ok(())
     }

@@ -57,7 +57,7 @@ pub enum ExifColour {
 
 impl ExifColour {
     /// Returns the colour space that the EXIF metadata state.
-    pub(super) fn space(self) -> Result<Space> {
+    pub(in crate::image) fn space(self) -> Result<Space> {
         match self {
             Self::Unstated => Ok(Space::Unstated),
             Self::Srgb => Ok(Space::Native),

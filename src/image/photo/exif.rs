@@ -1,8 +1,8 @@
 //! Reads the EXIF metadata of JPEG, PNG, WebP and TIFF files (CIPA DC-008, JEITA CP-3451).
 
-use super::Orientation;
 use crate::image::containers::{jpeg_segments, png_chunks, riff_chunks};
 use crate::image::file_colour::ExifColour;
+use crate::image::orientation::Orientation;
 use crate::image::tiff::ifd::{Directory, Ifds};
 
 /// EXIF tags. The first two are in the directory of the picture, the others in the EXIF directory unless noted.

@@ -1,14 +1,13 @@
 //! Metadata of a photo's file: orientation, focal length, exposure, and how its colours were interpreted.
 
 mod exif;
-mod orientation;
 #[cfg(test)]
 mod tests;
 
+pub use crate::image::orientation::Orientation;
+
 use crate::image::file_colour::FileColour;
 pub(super) use exif::{Exif, read};
-pub use orientation::Orientation;
-pub(super) use orientation::Upright;
 
 /// Relative standard deviation of a focal length from EXIF. The focal length marked on a lens is accurate to about 5 %.
 /// Besides, the 35 mm equivalent is rounded to a millimetre. Some cameras state it for an equal diagonal of the

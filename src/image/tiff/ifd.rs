@@ -86,7 +86,7 @@ impl<'a> Directory<'a> {
         let order = self.ifds.order;
         let entry = self.entries.iter().find(|e| order.u16([e[0], e[1]]) == tag)?;
         let [_, _, k0, k1, c0, c1, c2, c3, ref inline @ ..] = *entry;
-        let kind = Kind::new(order.u16([k0, k1]))?;
+        let kind = FieldType::new(order.u16([k0, k1]))?;
         let count = order.u32([c0, c1, c2, c3]);
         // Values of four bytes or less are stored in the entry itself.
         let len = u64::from(count) * kind.size() as u64;
@@ -113,7 +113,7 @@ impl<'a> Directory<'a> {
 
 /// The type of a tag's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Kind {
+enum FieldType {
     U8,
     U16,
     U32,
@@ -126,7 +126,7 @@ enum Kind {
     IRational,
 }
 
-impl Kind {
+impl FieldType {
     fn new(code: u16) -> Option<Self> {
         Some(match code {
             // Bytes, which may be text or have an undefined meaning.
@@ -158,7 +158,7 @@ impl Kind {
 /// The values of one tag.
 #[derive(Clone, Copy)]
 pub struct Field<'a> {
-    kind: Kind,
+    kind: FieldType,
     count: usize,
     values: &'a [u8],
     order: Order,
@@ -176,9 +176,9 @@ impl Field<'_> {
     /// Returns the value at an index if it is an unsigned integer.
     pub fn integer(&self, index: usize) -> Option<u64> {
         match self.kind {
-            Kind::U8 => self.bytes(index).map(|[v]| v.into()),
-            Kind::U16 => self.bytes(index).map(|v| self.order.u16(v).into()),
-            Kind::U32 => self.bytes(index).map(|v| self.order.u32(v).into()),
+            FieldType::U8 => self.bytes(index).map(|[v]| v.into()),
+            FieldType::U16 => self.bytes(index).map(|v| self.order.u16(v).into()),
+            FieldType::U32 => self.bytes(index).map(|v| self.order.u32(v).into()),
             _ => None,
         }
     }
@@ -187,14 +187,14 @@ impl Field<'_> {
     pub fn number(&self, index: usize) -> Option<f64> {
         let u32 = |index| self.bytes(index).map(|v| self.order.u32(v));
         let value = match self.kind {
-            Kind::U8 | Kind::U16 | Kind::U32 => self.integer(index)? as f64,
-            Kind::I8 => self.bytes(index).map(i8::from_ne_bytes)?.into(),
-            Kind::I16 => (self.bytes(index).map(|v| self.order.u16(v))? as i16).into(),
-            Kind::I32 => (u32(index)? as i32).into(),
-            Kind::F32 => f32::from_bits(u32(index)?).into(),
-            Kind::F64 => f64::from_bits(self.bytes(index).map(|v| self.order.u64(v))?),
-            Kind::URational => f64::from(u32(2 * index)?) / f64::from(u32(2 * index + 1)?),
-            Kind::IRational => f64::from(u32(2 * index)? as i32) / f64::from(u32(2 * index + 1)? as i32),
+            FieldType::U8 | FieldType::U16 | FieldType::U32 => self.integer(index)? as f64,
+            FieldType::I8 => self.bytes(index).map(i8::from_ne_bytes)?.into(),
+            FieldType::I16 => (self.bytes(index).map(|v| self.order.u16(v))? as i16).into(),
+            FieldType::I32 => (u32(index)? as i32).into(),
+            FieldType::F32 => f32::from_bits(u32(index)?).into(),
+            FieldType::F64 => f64::from_bits(self.bytes(index).map(|v| self.order.u64(v))?),
+            FieldType::URational => f64::from(u32(2 * index)?) / f64::from(u32(2 * index + 1)?),
+            FieldType::IRational => f64::from(u32(2 * index)? as i32) / f64::from(u32(2 * index + 1)? as i32),
         };
         value.is_finite().then_some(value)
     }
@@ -214,7 +214,7 @@ pub mod tests {
         let mut tail = 8 + 2 + 12 * entries.len() + 4;
         let mut values: Vec<u8> = Vec::new();
         for (tag, kind, bytes) in entries {
-            let size = Kind::new(*kind).unwrap().size();
+            let size = FieldType::new(*kind).unwrap().size();
             out.extend([u16(*tag), u16(*kind), u32((bytes.len() / size) as u32)].concat());
             if bytes.len() <= 4 {
                 out.extend(bytes);

@@ -17,12 +17,12 @@ mod tests;
 
 use super::colour::{srgb_to_linear, srgb8_table};
 use super::limits::Encoding;
-use super::photo::{Orientation, Upright};
+use super::orientation::{Orientation, Upright};
 use super::{Image, memory, try_vec};
 use crate::error::{Error, Result};
 use chunk::{sample, undo_predictor, unpack};
 use ifd::{Ifds, Order};
-use pixel_tags::{Alpha, Chunk, Colour, Depth, PixelTags};
+use pixel_tags::{Alpha, Chunk, Depth, Photometric, PixelTags};
 
 fn pixel_tags(bytes: &[u8]) -> Result<(PixelTags<'_>, Order)> {
     let directory = Ifds::new(bytes).and_then(Ifds::first);
@@ -63,7 +63,7 @@ pub(super) fn decode(bytes: &[u8], encoding: Encoding, orientation: Orientation)
 
 /// Whether the samples of the first picture are amounts of inks.
 pub(super) fn has_inks(bytes: &[u8]) -> bool {
-    pixel_tags(bytes).is_ok_and(|(tags, _)| matches!(tags.colour, Colour::Cmyk))
+    pixel_tags(bytes).is_ok_and(|(tags, _)| matches!(tags.colour, Photometric::Cmyk))
 }
 
 /// Decodes the amounts of the four inks of the first picture. They lie in `[0, 1]`, unless the file is damaged.
@@ -102,30 +102,30 @@ fn put_row(out: &mut Upright, row: &[u8], order: Order, tags: &PixelTags, at: &C
         match tags.colour {
             // In a planar file, this chunk holds one sample of each pixel. Alpha goes to the last channel.
             _ if stored == 1 && at.plane > 0 => pixel[if at.plane == colours { last } else { at.plane }] = value(x),
-            Colour::Palette(map) => {
+            Photometric::Palette(map) => {
                 let size = 1 << tags.depth.bits();
                 let index = (value(x) * (size - 1) as f32).round() as usize;
                 for (c, channel) in pixel.iter_mut().enumerate() {
                     *channel = map.integer(c * size + index).unwrap_or(0) as f32 / 65_535.0;
                 }
             }
-            Colour::Cmyk if last == 3 => {
+            Photometric::Cmyk if last == 3 => {
                 pixel.iter_mut().enumerate().for_each(|(c, ink)| *ink = value(x * stored + c));
             }
-            Colour::Cmyk => {
+            Photometric::Cmyk => {
                 let black = value(x * stored + 3);
                 for (c, channel) in pixel.iter_mut().enumerate() {
                     *channel = (1.0 - value(x * stored + c)) * (1.0 - black);
                 }
             }
-            Colour::Grey { is_inverted } => {
+            Photometric::Grey { is_inverted } => {
                 let grey = value(x * stored);
                 pixel[0] = if is_inverted { 1.0 - grey } else { grey };
                 if stored > 1 && has_alpha {
                     pixel[last] = value(x * stored + 1);
                 }
             }
-            Colour::Rgb => {
+            Photometric::Rgb => {
                 let count = if stored == 1 { 1 } else { pixel.len() };
                 for (c, channel) in pixel[..count].iter_mut().enumerate() {
                     *channel = value(x * stored + c);
@@ -141,15 +141,16 @@ fn decode_colours(image: &mut Image, tags: &PixelTags, encoding: Encoding) {
     let is_curved = encoding == Encoding::Srgb && !tags.depth.is_float();
     let is_associated = tags.alpha == Some(Alpha::Associated);
     // An 8-bit colour has only 256 values, so decode it by a table.
-    let table =
-        (tags.depth == Depth::U8 && !is_associated && !matches!(tags.colour, Colour::Cmyk | Colour::Palette(_)))
-            .then(srgb8_table);
+    let table = (tags.depth == Depth::U8
+        && !is_associated
+        && !matches!(tags.colour, Photometric::Cmyk | Photometric::Palette(_)))
+    .then(srgb8_table);
     let linear = |v: f32| match &table {
         _ if !is_curved => v,
         Some(table) => table[(v * 255.0).round() as usize],
         None => srgb_to_linear(v),
     };
-    let is_grey = matches!(tags.colour, Colour::Grey { .. });
+    let is_grey = matches!(tags.colour, Photometric::Grey { .. });
     for pixel in image.data.chunks_exact_mut(image.channels) {
         let (colours, alpha) = pixel.split_at_mut(if tags.alpha.is_some() { 3 } else { tags.channels() });
         if is_associated && alpha[0] > 0.0 {

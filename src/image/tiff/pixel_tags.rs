@@ -65,7 +65,7 @@ impl Depth {
 }
 
 #[derive(Clone, Copy)]
-pub enum Colour<'a> {
+pub enum Photometric<'a> {
     Grey {
         is_inverted: bool,
     },
@@ -117,7 +117,7 @@ pub struct PixelTags<'a> {
     pub width: usize,
     pub height: usize,
     pub depth: Depth,
-    pub colour: Colour<'a>,
+    pub colour: Photometric<'a>,
     pub alpha: Option<Alpha>,
     pub compression: Compression,
     pub predictor: Predictor,
@@ -158,7 +158,7 @@ impl<'a> PixelTags<'a> {
             return Err(unsupported("bytes whose lowest bit comes first (FillOrder 2)"));
         }
         let is_planar = samples > 1 && or(tag::PLANAR, "PlanarConfiguration", 1)? == 2;
-        if is_planar && matches!(colour, Colour::Cmyk) {
+        if is_planar && matches!(colour, Photometric::Cmyk) {
             return Err(unsupported("CMYK in separate planes"));
         }
 
@@ -185,18 +185,18 @@ impl<'a> PixelTags<'a> {
     /// Number of channels of the resulting image: grey with alpha becomes RGBA, palettes and CMYK become RGB.
     pub fn channels(&self) -> usize {
         match (self.colour, self.alpha) {
-            (Colour::Grey { .. }, None) => 1,
-            (Colour::Grey { .. } | Colour::Rgb, Some(_)) => 4,
-            (Colour::Rgb | Colour::Cmyk | Colour::Palette(_), _) => 3,
+            (Photometric::Grey { .. }, None) => 1,
+            (Photometric::Grey { .. } | Photometric::Rgb, Some(_)) => 4,
+            (Photometric::Rgb | Photometric::Cmyk | Photometric::Palette(_), _) => 3,
         }
     }
 
     /// Number of samples that make up a colour.
     pub fn colours(&self) -> usize {
         match self.colour {
-            Colour::Grey { .. } | Colour::Palette(_) => 1,
-            Colour::Rgb => 3,
-            Colour::Cmyk => 4,
+            Photometric::Grey { .. } | Photometric::Palette(_) => 1,
+            Photometric::Rgb => 3,
+            Photometric::Cmyk => 4,
         }
     }
 
@@ -349,19 +349,19 @@ fn depth(directory: &Directory, samples: usize) -> Result<Depth> {
     }
 }
 
-fn colour<'a>(directory: &Directory<'a>, photometric: u64, depth: Depth) -> Result<Colour<'a>> {
+fn colour<'a>(directory: &Directory<'a>, photometric: u64, depth: Depth) -> Result<Photometric<'a>> {
     match photometric {
-        0 | 1 => Ok(Colour::Grey { is_inverted: photometric == 0 && !depth.is_float() }),
-        2 => Ok(Colour::Rgb),
+        0 | 1 => Ok(Photometric::Grey { is_inverted: photometric == 0 && !depth.is_float() }),
+        2 => Ok(Photometric::Rgb),
         3 if matches!(depth, Depth::Bits(_) | Depth::U8) => {
             let map = directory.field(tag::COLOUR_MAP).ok_or_else(|| missing("ColorMap"))?;
             let needed = 3 << depth.bits();
             match map.len() {
-                len if len >= needed => Ok(Colour::Palette(map)),
+                len if len >= needed => Ok(Photometric::Palette(map)),
                 len => Err(Error::format(format!("the TIFF's ColorMap has {len} values; it must have {needed}"))),
             }
         }
-        5 => Ok(Colour::Cmyk),
+        5 => Ok(Photometric::Cmyk),
         other => {
             let name = match other {
                 6 => "YCbCr".to_string(),
@@ -376,16 +376,16 @@ fn colour<'a>(directory: &Directory<'a>, photometric: u64, depth: Depth) -> Resu
 
 /// Returns the kind of alpha if the first sample after the colours is alpha. The tag ExtraSamples states whether it is.
 /// Without this tag, a sample after the colours counts as unassociated alpha. Palettes and CMYK never have alpha.
-fn alpha(directory: &Directory, colour: Colour, samples: usize) -> Result<Option<Alpha>> {
+fn alpha(directory: &Directory, colour: Photometric, samples: usize) -> Result<Option<Alpha>> {
     let colours = match colour {
-        Colour::Grey { .. } | Colour::Palette(_) => 1,
-        Colour::Rgb => 3,
-        Colour::Cmyk => 4,
+        Photometric::Grey { .. } | Photometric::Palette(_) => 1,
+        Photometric::Rgb => 3,
+        Photometric::Cmyk => 4,
     };
     if samples < colours {
         return Err(Error::format(format!("the TIFF has {samples} samples per pixel; its colours need {colours}")));
     }
-    if samples == colours || matches!(colour, Colour::Cmyk | Colour::Palette(_)) {
+    if samples == colours || matches!(colour, Photometric::Cmyk | Photometric::Palette(_)) {
         return Ok(None);
     }
     Ok(match directory.field(tag::EXTRA_SAMPLES).map(|f| f.integer(0)) {

@@ -4,7 +4,7 @@ use super::{decode, decode_inks, has_inks, probe};
 use crate::error::ErrorKind;
 use crate::image::colour::srgb_to_linear;
 use crate::image::io::Encoding;
-use crate::image::photo::Orientation;
+use crate::image::orientation::Orientation;
 use half::f16;
 
 /// A test picture and the settings with which it is stored as a TIFF.

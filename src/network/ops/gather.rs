@@ -19,8 +19,8 @@ fn picked(
     // Allocate the output first: if its size is refused, the index maps, which are as long as the axes, need not be
     // computed.
     let data = match &x.data {
-        Data::Floats(values) => Values::Floats(values, call.budget.vec(total, fill)?),
-        Data::Integers(values) => Values::Integers(values, call.budget.vec(total, fill as i64)?),
+        Data::Floats(values) => GatherData::Floats(values, call.budget.vec(total, fill)?),
+        Data::Integers(values) => GatherData::Integers(values, call.budget.vec(total, fill as i64)?),
     };
     let maps: Vec<Vec<Option<usize>>> = if total == 0 {
         Vec::new()
@@ -31,11 +31,11 @@ fn picked(
     };
     let rows = Rows { from: &x.shape, to: &shape, maps: &maps };
     let data = match data {
-        Values::Floats(values, mut out) => {
+        GatherData::Floats(values, mut out) => {
             rows.copy(values, &mut out, call)?;
             return Ok(Tensor::floats(shape, out));
         }
-        Values::Integers(values, mut out) => {
+        GatherData::Integers(values, mut out) => {
             rows.copy(values, &mut out, call)?;
             out
         }
@@ -43,7 +43,7 @@ fn picked(
     Ok(Tensor::integers(shape, data))
 }
 
-enum Values<'a> {
+enum GatherData<'a> {
     Floats(&'a [f32], Vec<f32>),
     Integers(&'a [i64], Vec<i64>),
 }

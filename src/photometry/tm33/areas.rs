@@ -14,19 +14,19 @@ use crate::error::Result;
 const MAX_LENGTH: f64 = 1e4;
 
 /// A face of TM-33: the names of its element and of the elements for its areas, and its two directions.
-struct Face {
+struct FaceElement {
     name: &'static str,
     area: &'static str,
     count: &'static str,
     sides: [&'static str; 2],
 }
 
-const fn face(name: &'static str, area: &'static str, count: &'static str, sides: [&'static str; 2]) -> Face {
-    Face { name, area, count, sides }
+const fn face(name: &'static str, area: &'static str, count: &'static str, sides: [&'static str; 2]) -> FaceElement {
+    FaceElement { name, area, count, sides }
 }
 
 /// The faces in the order of the file.
-const FACES: [Face; 6] = [
+const FACES: [FaceElement; 6] = [
     face("TopFace", "TopArea", "NumberTop", ["Length", "Width"]),
     face("BottomFace", "BottomArea", "NumberBottom", ["Length", "Width"]),
     face("C0Face", "C0Area", "NumberC0", ["Length", "Height"]),
@@ -78,7 +78,7 @@ pub fn read(emitters: &[Element], luminaire: &mut Luminaire) -> Result<()> {
 }
 
 /// Returns the bounds of the areas on a face; `None` if it has none.
-fn bounds(emitters: &[Element], face: &Face) -> Result<Option<Area>> {
+fn bounds(emitters: &[Element], face: &FaceElement) -> Result<Option<Area>> {
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     let mut is_round = true;
     let faces = emitters.iter().filter_map(|emitter| emitter.find("EmissionAreas")?.find(face.name));

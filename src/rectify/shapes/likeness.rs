@@ -115,7 +115,7 @@ impl Shape {
 /// fewer than [`MIN_PIXELS`] pixels are left out.
 pub fn of_mask(mask: &Image, camera: &Perspective) -> Result<Vec<Shape>> {
     #[derive(Clone, Copy, Default)]
-    struct Sums {
+    struct RegionMoments {
         count: f64,
         first: DVec2,
         second: [f64; 3],
@@ -123,7 +123,7 @@ pub fn of_mask(mask: &Image, camera: &Perspective) -> Result<Vec<Shape>> {
     }
     let (width, height) = (mask.width, mask.height);
     let regions = Regions::of(mask)?;
-    let mut sums = try_vec(regions.count, Sums::default())?;
+    let mut sums = try_vec(regions.count, RegionMoments::default())?;
     for (pixel, &label) in regions.labels.iter().enumerate().filter(|(_, label)| **label > 0) {
         let sum = &mut sums[label as usize - 1];
         let at = mask.centre_of(pixel) - camera.principal;
@@ -134,11 +134,11 @@ pub fn of_mask(mask: &Image, camera: &Perspective) -> Result<Vec<Shape>> {
         sum.is_cut |= x == 0 || y == 0 || x + 1 == width || y + 1 == height;
     }
     let bloom_unit = BLOOM_UNIT * width.max(height) as f64;
-    let mut whole: Vec<Sums> = sums.into_iter().filter(|sum| !sum.is_cut && sum.count >= MIN_PIXELS).collect();
+    let mut whole: Vec<RegionMoments> = sums.into_iter().filter(|sum| !sum.is_cut && sum.count >= MIN_PIXELS).collect();
     whole.sort_by(|a, b| b.count.total_cmp(&a.count));
     whole.truncate(MAX_SHAPES);
     let lens = Radial { centre: DVec2::ZERO, bend: camera.bend };
-    let shape = |sum: &Sums| {
+    let shape = |sum: &RegionMoments| {
         let mean = sum.first / sum.count;
         let [xx, xy, yy] = sum.second.map(|s| s / sum.count);
         let cross = xy - mean.x * mean.y;

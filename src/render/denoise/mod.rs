@@ -42,14 +42,14 @@ pub use input::Input;
 use guides::Guides;
 use light::Light;
 use planes::{Classes, Planes};
-use regression::{Pass, Pilot};
+use regression::{FilterPass, PilotImage};
 use statement::Statement;
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     /// Strength of the smoothing, in `[0, 10]`. The filter averages neighbouring pixels whose pilots (first estimates
-    /// of their values, [`Pilot`]) differ by no more than noise explains. `strength` scales the squared difference that
-    /// counts as noise. 0 leaves the image unchanged.
+    /// of their values, [`PilotImage`]) differ by no more than noise explains. `strength` scales the squared difference
+    /// that counts as noise. 0 leaves the image unchanged.
     pub strength: f32,
 }
 
@@ -113,8 +113,8 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Output> {
 
 /// Returns the filtered light after each pass; the pilot of the first pass is not among them.
 fn passes(light: &Light, guides: &Guides, classes: &Classes, tolerance: f32, job: Job) -> Result<Vec<Planes>> {
-    let pass = |values: &Planes, pilot: Option<Pilot>, step: usize, job: Job| {
-        Pass { light: values, pilot, confidence: &light.confidence, guides, step }.run(job)
+    let pass = |values: &Planes, pilot: Option<PilotImage>, step: usize, job: Job| {
+        FilterPass { light: values, pilot, confidence: &light.confidence, guides, step }.run(job)
     };
     let mut pilot = pass(&light.halves, None, 1, job.part(0.0, 0.2))?;
     let mut passes: Vec<Planes> = Vec::with_capacity(PASSES.len());
@@ -125,7 +125,7 @@ fn passes(light: &Light, guides: &Guides, classes: &Classes, tolerance: f32, job
         let before = passes.iter().rev().nth(1).unwrap_or(&light.halves);
         let squares = squared_differences(light, pilots, before, part.part(0.0, 0.05))?;
         let variance = classes.smoothed(&squares, radius, part.part(0.05, 0.2))?;
-        let tested = Pilot { light: pilots, variance: &variance, tolerance };
+        let tested = PilotImage { light: pilots, variance: &variance, tolerance };
         let filtered = pass(values, Some(tested), step, part.part(0.2, 1.0))?;
         passes.push(filtered);
         // Free the first pilot: from now on, the pilot is the result of the most recent pass.

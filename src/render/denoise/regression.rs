@@ -36,12 +36,12 @@ const EQUAL: f32 = 1e-6;
 const SUMS: usize = 15;
 
 /// The data of one pass.
-pub struct Pass<'a> {
+pub struct FilterPass<'a> {
     /// The light of both halves; the values that are combined.
     pub light: &'a Planes,
     /// The pilot: an estimate of the light with less noise, whose pixels are compared by the statistical test. `None`
     /// skips the test and the fit of slopes.
-    pub pilot: Option<Pilot<'a>>,
+    pub pilot: Option<PilotImage<'a>>,
     /// Confidence in the light of each half of the paths, for each pixel, in `(0, 1]`.
     pub confidence: &'a Planes,
     pub guides: &'a Guides,
@@ -50,7 +50,7 @@ pub struct Pass<'a> {
 }
 
 #[derive(Clone, Copy)]
-pub struct Pilot<'a> {
+pub struct PilotImage<'a> {
     pub light: &'a Planes,
     /// Variance of the pilot, per channel; equal for both halves.
     pub variance: &'a Planes,
@@ -60,7 +60,7 @@ pub struct Pilot<'a> {
 }
 
 /// Memory in which a row is computed.
-struct Scratch {
+struct RowScratch {
     /// For each half, the sums of all pixels (see [`SUMS`]).
     sums: [Vec<f32>; 2],
     /// Distances in the guides, and weights, of the pixels' neighbours at one tap.
@@ -68,14 +68,14 @@ struct Scratch {
     weights: Vec<f32>,
 }
 
-impl Scratch {
+impl RowScratch {
     fn new(width: usize) -> Result<Self> {
         let sums = [try_vec(SUMS * width, 0.0)?, try_vec(SUMS * width, 0.0)?];
         Ok(Self { sums, distance: try_vec(width, 0.0)?, weights: try_vec(width, 0.0)? })
     }
 }
 
-impl Pass<'_> {
+impl FilterPass<'_> {
     /// Filters both halves. Each half is tested with its own half of the pilot, so its noise stays independent of the
     /// noise of the other half. Only the smoothed variance of the pilot is common to both tests.
     pub fn run(&self, job: Job) -> Result<Planes> {
@@ -83,7 +83,7 @@ impl Pass<'_> {
         Planes::from_rows_with(
             [width, height, LIGHT],
             job,
-            || Scratch::new(width),
+            || RowScratch::new(width),
             |scratch, y, out| {
                 scratch.sums.iter_mut().for_each(|sums| sums.fill(0.0));
                 for dy in -RADIUS..=RADIUS {
@@ -100,7 +100,7 @@ impl Pass<'_> {
     }
 
     /// Adds one tap to the sums of the pixels of a row.
-    fn add(&self, y: usize, tap: [isize; 2], scratch: &mut Scratch) {
+    fn add(&self, y: usize, tap: [isize; 2], scratch: &mut RowScratch) {
         let (width, height) = (self.light.width, self.light.height);
         let Some(at) = Shift::new([width, height], y, tap.map(|t| t * self.step as isize)) else { return };
         let (distance, weights) = (&mut scratch.distance[..at.span], &mut scratch.weights[..at.span]);
@@ -115,7 +115,7 @@ impl Pass<'_> {
             let confidence = &self.confidence.row(at.row, half)[at.there..at.there + at.span];
             match self.pilot {
                 None => weights.copy_from_slice(distance),
-                Some(Pilot { light, variance, tolerance }) => {
+                Some(PilotImage { light, variance, tolerance }) => {
                     let here = light.part(y, 3 * half, at.from, at.span);
                     let there = light.part(at.row, 3 * half, at.there, at.span);
                     let noise_here = variance.part(y, 0, at.from, at.span);

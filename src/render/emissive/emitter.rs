@@ -1,5 +1,6 @@
 //! An emissive triangle, with the geometry and the texture look-up that sampling its emission needs.
 
+use crate::render::contribution::mean_channel;
 use crate::render::facet::{Facet, NONE};
 use crate::scene::{Scene, Texture};
 use glam::{DVec2, Vec2, Vec3, Vec4};
@@ -103,10 +104,4 @@ impl Emitter {
         let size = DVec2::new(texture.image.width as f64, texture.image.height as f64);
         self.uv.map(|uv| uv.as_dvec2() * size)
     }
-}
-
-/// Returns the mean of the channels. Light sampling uses this value as brightness, since it is positive wherever any
-/// channel is positive.
-pub fn mean_channel(v: Vec3) -> f32 {
-    v.element_sum() / 3.0
 }

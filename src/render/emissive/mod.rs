@@ -17,12 +17,12 @@ mod face_patches;
 mod polygon;
 mod tiles;
 
-pub use emitter::{Emitter, mean_channel};
+pub use emitter::Emitter;
 
-use super::contribution::LightSource;
+use super::bounds::Bounds;
+use super::contribution::{LightSource, mean_channel};
 use super::facet::Facet;
-use super::light::bounds::Bounds;
-use super::luminaires::Source;
+use super::luminaires::FaceLuminaire;
 use crate::error::Result;
 use crate::image::{reserve_capacity, try_collect, try_vec, try_with_capacity};
 use crate::scene::Scene;
@@ -30,7 +30,7 @@ use face_patches::FacePatches;
 use glam::{Vec2, Vec3};
 use polygon::uniform_in_triangle;
 use rayon::prelude::*;
-use tiles::{Tile, Tiling};
+use tiles::{EmissiveTile, Tiling};
 
 /// Index that stands for "no piece".
 const NONE: u32 = u32::MAX;
@@ -45,7 +45,7 @@ pub struct Emitters {
     /// The undivided triangles (`uniform`) and the emissive tiles. Piece indices count the triangles first, then the
     /// tiles.
     uniform: Vec<UniformTriangle>,
-    tiles: Vec<Tile>,
+    tiles: Vec<EmissiveTile>,
     /// The patches of luminaires' faces. Their piece indices follow the indices of the tiles.
     patches: FacePatches,
     /// Flux of all emitters in lumens; for a double-sided emitter, only one side counts.
@@ -65,7 +65,7 @@ enum Division {
 /// A piece, the unit that light sampling selects.
 enum Piece<'a> {
     Uniform(&'a UniformTriangle),
-    Tile(&'a Tile),
+    Tile(&'a EmissiveTile),
     /// A patch of a luminaire, by its index.
     Patch(usize),
 }
@@ -170,7 +170,7 @@ impl Emitters {
     /// them. `first` holds the id of each mesh's first triangle. Appends the bounds of every patch to `bounds`.
     pub fn add_luminaires(
         &mut self,
-        sources: Vec<Source>,
+        sources: Vec<FaceLuminaire>,
         facets: &[Facet],
         meshes: usize,
         first: &[u32],

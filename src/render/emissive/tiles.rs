@@ -7,7 +7,7 @@
 
 use super::emitter::Emitter;
 use super::polygon::{Overlap, Polygon, Rectangle};
-use crate::render::light::bounds::Bounds;
+use crate::render::bounds::Bounds;
 use crate::scene::Texture;
 use glam::{DMat2, DVec2, Vec2};
 
@@ -38,7 +38,7 @@ pub struct Tiling {
 /// A tile that emits. Its distribution is stored inline and aligned to cache lines, so that sampling touches few cache
 /// lines.
 #[repr(align(64))]
-pub struct Tile {
+pub struct EmissiveTile {
     pub emitter: u32,
     /// Emission × area, mean of the channels: the luminous intensity along the normal, in cd.
     pub intensity: f32,
@@ -108,7 +108,13 @@ impl Tiling {
     }
 
     /// Builds a tile of the emitter with this index, and the bounds of its light. A dark tile has zero intensity.
-    pub fn tile(&self, index: u32, emitter: &Emitter, texture: &Texture, [column, row]: [usize; 2]) -> (Tile, Bounds) {
+    pub fn tile(
+        &self,
+        index: u32,
+        emitter: &Emitter,
+        texture: &Texture,
+        [column, row]: [usize; 2],
+    ) -> (EmissiveTile, Bounds) {
         let first = self.first_texel(column, row);
         let overlap = rectangle(first, SIDE as f64).overlap(&self.triangle);
         let first_texel = self.texel_inside(first);
@@ -141,7 +147,7 @@ impl Tiling {
         let bounds = Bounds::of_surface(corners, emitter.normal, emitter.double_sided, intensity);
         let shares = sums.map(|s| (s / sum) as f32);
         let whole = overlap == Overlap::Whole;
-        (Tile { emitter: index, intensity, column: column as u32, row: row as u32, whole, shares }, bounds)
+        (EmissiveTile { emitter: index, intensity, column: column as u32, row: row as u32, whole, shares }, bounds)
     }
 
     /// Returns the area, in texels, of the part of a rectangle that the triangle covers.
@@ -156,7 +162,7 @@ impl Tiling {
     /// Samples a point of a tile in proportion to its emission: `u` selects the texel. The remainder of `u`, rescaled
     /// to `[0, 1]`, and `v` select the point within the texel. Returns barycentric coordinates; `None` if rounding
     /// selected a texel outside the triangle.
-    pub fn sample(&self, tile: &Tile, (u, v): (f64, f32)) -> Option<Vec2> {
+    pub fn sample(&self, tile: &EmissiveTile, (u, v): (f64, f32)) -> Option<Vec2> {
         let (shares, target) = (&tile.shares, (u as f32).min(1.0 - f32::EPSILON));
         // Count the entries up to the target instead of bisecting: the table is in the cache, and the count has no
         // branch that could be mispredicted.

@@ -48,7 +48,7 @@ const MAX_DEEP_TILES: usize = 32;
 /// Constant that is added to each tile's selection weight, as a multiple of the mean standard deviation of all tiles,
 /// so that even tiles without variance can be selected. Predictions are unbiased for any positive value, and a tile of
 /// mean deviation is selected with the same probability for any value. [convention]
-const MIN_CHANCE: f64 = 0.5;
+const ADDED_WEIGHT: f64 = 0.5;
 /// Salt of the pilot's seed, so that its random numbers differ from those of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
 
@@ -214,7 +214,7 @@ fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<Pil
     let varies = grid.max_with_neighbourhood_mean(&variances)?;
     let deviation = |tile: usize| varies[tile].sqrt();
     let sum: f64 = (0..expected.len()).map(deviation).sum();
-    let floor = if sum > 0.0 { MIN_CHANCE * sum / expected.len() as f64 } else { 1.0 };
+    let floor = if sum > 0.0 { ADDED_WEIGHT * sum / expected.len() as f64 } else { 1.0 };
 
     let mut sampling = SystematicSampler::new(sum + floor * expected.len() as f64, expected.len().min(MAX_TILES), rng);
     let mut chosen = Vec::with_capacity(MAX_TILES);

@@ -34,7 +34,7 @@ use crate::rng;
 use crate::scene::{PunctualLight, c90};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
-use surfaces::{LuminousPart, Surfaces, View};
+use surfaces::{EmissiveSurfaces, LuminousPart, View};
 
 /// The position of an observer's eye and the direction in which it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,12 +68,12 @@ pub struct Rating {
     /// Direct illuminance at the eye, in lux, from light that the rating ignores: of the environment, of lights without
     /// a luminous opening, and the glow of emissive surfaces.
     pub unrated_lux: f64,
-    pub sources: Vec<Source>,
+    pub sources: Vec<GlareSource>,
 }
 
 /// A luminaire, or a connected luminous part of a mesh, that an observer sees, and that causes glare.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Source {
+pub struct GlareSource {
     pub origin: Origin,
     /// Luminance of the source's visible part in cd/m², times the root mean square transmittance of the panes in front
     /// of it.
@@ -95,7 +95,7 @@ pub enum Origin {
 impl Rating {
     /// Returns the number of sources whose solid angle lies outside the range for which CIE 117 is valid.
     pub fn outside_range(&self) -> usize {
-        let is_valid = |s: &&Source| (MIN_SOLID_ANGLE..=MAX_SOLID_ANGLE).contains(&s.solid_angle);
+        let is_valid = |s: &&GlareSource| (MIN_SOLID_ANGLE..=MAX_SOLID_ANGLE).contains(&s.solid_angle);
         self.sources.len() - self.sources.iter().filter(is_valid).count()
     }
 }
@@ -125,7 +125,7 @@ const BATCHES: u32 = 16;
 pub fn rate(world: &World, eyes: &[Eye], params: &Params, job: Job) -> Result<Vec<Rating>> {
     check_range("samples", params.samples, BATCHES, 1 << 24)?;
     let lamps = lamps(world);
-    let surfaces = Surfaces::new(world, job.part(0.0, 0.0))?;
+    let surfaces = EmissiveSurfaces::new(world, job.part(0.0, 0.0))?;
     for (i, eye) in eyes.iter().enumerate() {
         check(eye, &lamps).map_err(|e| e.context(format_args!("observer {i}")))?;
     }
@@ -235,7 +235,7 @@ fn lamps(world: &World) -> Vec<Lamp> {
 struct Rated<'a> {
     /// In the order of the lights of the scene.
     lamps: &'a [Lamp],
-    surfaces: &'a Surfaces,
+    surfaces: &'a EmissiveSurfaces,
 }
 
 impl Rated<'_> {
@@ -265,7 +265,7 @@ fn rate_one(world: &World, eye: &Eye, rated: &Rated, params: &Params, index: u64
         }
         let (visible, squared_share) = lamp.visibility(world, position, seen.towards);
         if visible > 0.0 {
-            sources.push(Source {
+            sources.push(GlareSource {
                 origin: Origin::Light(lamp.light),
                 luminance: seen.candela / seen.area * squared_share.sqrt(),
                 solid_angle: seen.area / seen.distance.powi(2) * visible,
@@ -276,7 +276,12 @@ fn rate_one(world: &World, eye: &Eye, rated: &Rated, params: &Params, index: u64
     let view = View { world, eye: eye.position, frame: [right, up, ahead] };
     for part in rated.surfaces.seen_from(&view, rng::hash(params.seed, &[index]), job)? {
         let LuminousPart { mesh, luminance, solid_angle, towards } = part;
-        sources.push(Source { origin: Origin::Mesh(mesh), luminance, solid_angle, position_index: index_of(towards) });
+        sources.push(GlareSource {
+            origin: Origin::Mesh(mesh),
+            luminance,
+            solid_angle,
+            position_index: index_of(towards),
+        });
     }
     let (background, background_error, unrated_lux) = background(world, eye, rated, params, index, job);
     let sum: f64 = sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position_index.powi(2)).sum();

@@ -41,7 +41,7 @@ const MAX_EDGE_STEPS: f32 = 2048.0;
 const NONE: u32 = u32::MAX;
 
 /// The emissive meshes of a scene.
-pub struct Surfaces {
+pub struct EmissiveSurfaces {
     /// The triangles that emit, in the order of the world's emitters.
     accel: Accel,
     /// For each of these triangles, the first triangle of its connected surface.
@@ -81,7 +81,7 @@ struct Luminous {
 
 /// What rays have seen of a source, or of a surface in one cell.
 #[derive(Clone, Copy, Default)]
-struct Sums {
+struct RaySums {
     mesh: usize,
     /// Number of rays that have seen it.
     rays: f64,
@@ -91,10 +91,10 @@ struct Sums {
 }
 
 /// A luminous surface in a cell.
-struct Piece {
+struct CellSurface {
     cell: u32,
     surface: u32,
-    sums: Sums,
+    sums: RaySums,
 }
 
 /// The cells that the search has yet to look into. Each cell is added only once.
@@ -115,7 +115,7 @@ impl OpenCells {
     }
 }
 
-impl Surfaces {
+impl EmissiveSurfaces {
     pub fn new(world: &World, job: Job) -> Result<Self> {
         let emitters = &world.lights().emitters;
         // The emitters of meshes come first; the faces of luminaires follow them.
@@ -160,9 +160,9 @@ impl Surfaces {
         }
         pieces.sort_unstable_by_key(|piece| (piece.cell, piece.surface));
         let (labels, count) = label(&pieces)?;
-        let mut sums = try_vec(count, Sums::default())?;
+        let mut sums = try_vec(count, RaySums::default())?;
         pieces.iter().zip(&labels).for_each(|(piece, label)| sums[*label as usize].add(&piece.sums));
-        Ok(sums.iter().filter(|sum| sum.rays > 0.0).map(Sums::part).collect())
+        Ok(sums.iter().filter(|sum| sum.rays > 0.0).map(RaySums::part).collect())
     }
 
     /// Adds the cells in whose centre a surface is luminous.
@@ -203,7 +203,7 @@ impl Surfaces {
     }
 
     /// Traces the rays of a cell. Adds each luminous surface that they meet to `pieces`.
-    fn look_into(&self, cell: usize, view: &View, rng: &mut Rng, pieces: &mut Vec<Piece>) -> Result<()> {
+    fn look_into(&self, cell: usize, view: &View, rng: &mut Rng, pieces: &mut Vec<CellSurface>) -> Result<()> {
         let emitters = &view.world.lights().emitters.emitters;
         let first = pieces.len();
         for i in 0..RAYS * RAYS {
@@ -215,7 +215,7 @@ impl Surfaces {
             let index = match known {
                 Some(index) => first + index,
                 None => {
-                    try_push(pieces, Piece { cell: cell as u32, surface, sums: Sums::default() })?;
+                    try_push(pieces, CellSurface { cell: cell as u32, surface, sums: RaySums::default() })?;
                     pieces.len() - 1
                 }
             };
@@ -224,7 +224,7 @@ impl Surfaces {
             let light = view.world.transmittance_without(&path, |triangle| triangle == emitter.id, None);
             let share = f64::from(colour::luminance(light));
             if share > 0.0 {
-                pieces[index].sums.add(&Sums {
+                pieces[index].sums.add(&RaySums {
                     mesh: emitter.mesh as usize,
                     rays: 1.0,
                     luminance: f64::from(met.luminance),
@@ -288,7 +288,7 @@ impl View<'_> {
     }
 }
 
-impl Sums {
+impl RaySums {
     fn add(&mut self, other: &Self) {
         if other.rays > 0.0 {
             self.mesh = other.mesh;
@@ -335,7 +335,7 @@ fn neighbours(cell: usize) -> impl Iterator<Item = usize> {
 
 /// Numbers the sources: pieces of one surface in touching cells belong to one source. `pieces` are in the order of
 /// their cells and surfaces. Returns the number of each piece's source, and the number of sources.
-fn label(pieces: &[Piece]) -> Result<(Vec<u32>, usize)> {
+fn label(pieces: &[CellSurface]) -> Result<(Vec<u32>, usize)> {
     let at = |cell: usize, surface: u32| {
         pieces.binary_search_by_key(&(cell as u32, surface), |piece| (piece.cell, piece.surface)).ok()
     };
@@ -349,7 +349,7 @@ fn label(pieces: &[Piece]) -> Result<(Vec<u32>, usize)> {
         labels[start] = count as u32;
         open.push(start);
         while let Some(piece) = open.pop() {
-            let Piece { cell, surface, .. } = pieces[piece];
+            let CellSurface { cell, surface, .. } = pieces[piece];
             for next in neighbours(cell as usize).filter_map(|near| at(near, surface)) {
                 if labels[next] == NONE {
                     labels[next] = count as u32;

@@ -22,12 +22,12 @@
 //! A render that wastes few light samples on hidden lights keeps the selector of all lights. Its image is then the
 //! same, bit for bit, as without learning.
 
-use super::bounds::Receiver;
 use super::selector::{Inventory, Selector};
 use super::survey::SampleCounts;
 use super::tree::{Child, LightTree};
 use crate::error::Result;
 use crate::image::try_vec;
+use crate::render::bounds::Receiver;
 
 /// A light is unlikely if none of its samples has arrived and the estimated probability that the next one arrives is
 /// below this value. [judged on 3 scenes]

@@ -10,7 +10,6 @@
 //! Half of the probability is divided among the groups in proportion to their power, and half is divided equally.
 //! Power alone would ignore occlusion by walls and could leave a group with too few samples.
 
-pub(super) mod bounds;
 mod lamp_visibility;
 mod learning;
 mod luminous_surfaces;
@@ -19,12 +18,12 @@ mod selector;
 mod survey;
 mod tree;
 
-pub use bounds::{Bounds, Receiver};
 pub use lamp_visibility::LampVisibility;
 pub use luminous_surfaces::connected;
 
-use super::contribution::LightSource;
-use super::emissive::{Emitters, mean_channel};
+use super::bounds::{Bounds, Receiver};
+use super::contribution::{LightSource, mean_channel};
+use super::emissive::Emitters;
 use super::environment::{self, EnvironmentSampler};
 use crate::error::Result;
 use crate::scene::{PunctualLight, Scene};

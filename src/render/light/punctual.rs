@@ -1,9 +1,9 @@
 //! Punctual lights prepared for light sampling: points, spots, directional lights (`KHR_lights_punctual`) and measured
 //! luminaires.
 
-use super::bounds::Bounds;
 use crate::photometry::Luminaire;
-use crate::render::emissive::mean_channel;
+use crate::render::bounds::{Bounds, CONE_MARGIN};
+use crate::render::contribution::mean_channel;
 use crate::render::measured::Measured;
 use crate::scene::PunctualLight;
 use glam::{DVec3, Vec3};
@@ -15,7 +15,7 @@ pub enum Punctual {
     Near {
         position: Vec3,
         intensity: Vec3,
-        shape: Shape,
+        shape: IntensityDistribution,
     },
     /// A directional light, infinitely far away; `towards` is the unit direction to the light.
     Far {
@@ -25,7 +25,7 @@ pub enum Punctual {
 }
 
 /// How the intensity of a light depends on the direction.
-pub enum Shape {
+pub enum IntensityDistribution {
     Isotropic,
     Cone(Cone),
     Measured(Measured),
@@ -44,21 +44,24 @@ impl Punctual {
     /// Prepares a light; `distributions` are the luminous intensity distributions of the scene.
     pub fn new(light: &PunctualLight, distributions: &[Arc<Luminaire>]) -> Self {
         match *light {
-            PunctualLight::Point { position, intensity } => Self::Near { position, intensity, shape: Shape::Isotropic },
+            PunctualLight::Point { position, intensity } => {
+                Self::Near { position, intensity, shape: IntensityDistribution::Isotropic }
+            }
             PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
                 let (inner, outer) = (inner_angle.cos(), outer_angle.cos());
                 let axis = direction.normalize_or_zero();
                 Self::Near {
                     position,
                     intensity,
-                    shape: Shape::Cone(Cone { axis, outer, scale: 1.0 / (inner - outer).max(1e-4) }),
+                    shape: IntensityDistribution::Cone(Cone { axis, outer, scale: 1.0 / (inner - outer).max(1e-4) }),
                 }
             }
             PunctualLight::Directional { direction, illuminance } => {
                 Self::Far { towards: -direction.normalize_or_zero(), illuminance }
             }
             PunctualLight::Luminaire { position, axis, c0, colour, distribution, .. } => {
-                let shape = Shape::Measured(Measured::new(axis, c0, distributions[distribution].clone()));
+                let shape =
+                    IntensityDistribution::Measured(Measured::new(axis, c0, distributions[distribution].clone()));
                 Self::Near { position, intensity: colour, shape }
             }
         }
@@ -76,15 +79,15 @@ impl Punctual {
             }
             PunctualLight::Spot { position, direction, intensity, outer_angle, .. } => {
                 let axis = direction.normalize_or(Vec3::Y);
-                // Widen the cone slightly, to allow for rounding.
-                Bounds::of_cone(position, axis, outer_angle + 0.01, mean_channel(intensity.max(Vec3::ZERO)))
+                let angle = outer_angle + CONE_MARGIN as f32;
+                Bounds::of_cone(position, axis, angle, mean_channel(intensity.max(Vec3::ZERO)))
             }
             PunctualLight::Directional { .. } => return None,
             PunctualLight::Luminaire { position, axis, colour, distribution, .. } => {
                 let luminaire = &*distributions[distribution];
-                // Assume full intensity up to the widest angle at which the luminaire emits, plus a margin for
-                // rounding. The bounds have full intensity up to `cone_angle` - 90°, so add 90°.
-                let cone_angle = luminaire.max_gamma().to_radians() as f32 + FRAC_PI_2 + 0.01;
+                // Assume full intensity up to the widest angle at which the luminaire emits. The bounds have full
+                // intensity up to `cone_angle` - 90°, so add 90°.
+                let cone_angle = luminaire.max_gamma().to_radians() as f32 + FRAC_PI_2 + CONE_MARGIN as f32;
                 let peak = luminaire.candela.iter().copied().fold(0.0, f64::max) as f32;
                 Bounds::of_cone(position, axis, cone_angle, peak * mean_channel(colour.max(Vec3::ZERO)))
             }
@@ -124,7 +127,7 @@ pub fn relative(light: &PunctualLight, centre: DVec3) -> PunctualLight {
     light
 }
 
-impl Shape {
+impl IntensityDistribution {
     /// Returns the factor on the intensity in a unit direction: a share in `[0, 1]`, or for a measured luminaire the
     /// intensity in candela.
     pub fn factor(&self, direction: Vec3) -> f32 {

@@ -1,9 +1,9 @@
 //! Selects one light at random, from all lights of a scene or from a subset of them.
 
-use super::bounds::Bounds;
 use super::tree::LightTree;
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
+use crate::render::bounds::Bounds;
 use crate::render::distribution::Distribution;
 use std::f64::consts::PI;
 

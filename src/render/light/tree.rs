@@ -7,9 +7,9 @@
 //! surface area, because it is positive also for lamps in one line. The length of the mean emission direction replaces
 //! the solid angle.
 
-use super::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
+use crate::render::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use glam::{Vec3, Vec3A};
 
 /// Number of bins per axis; their borders are the candidate splits. [convention]
@@ -57,7 +57,7 @@ struct Node {
 /// A light, with the data needed while the tree is built.
 struct Item {
     bounds: Bounds,
-    extent: Extent,
+    extent: ClusterSums,
     centre: Vec3A,
     light: u32,
 }
@@ -91,7 +91,7 @@ impl LightTree {
         }
         let item = |(bounds, light): (&Bounds, u32)| Item {
             bounds: *bounds,
-            extent: Extent::of(bounds),
+            extent: ClusterSums::of(bounds),
             centre: bounds.centre().into(),
             light,
         };
@@ -224,7 +224,7 @@ fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32
     if items.len() == 1 {
         return LIGHT | first as u32;
     }
-    let extent = Extent::of_all(items);
+    let extent = ClusterSums::of_all(items);
     let at = if depth < MAX_HEURISTIC_DEPTH { split(items) } else { items.len() / 2 };
     let in_parallel = items.len() >= PARALLEL_FROM;
     let (left, right) = items.split_at_mut(at);
@@ -238,7 +238,7 @@ fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32
 
 /// Sums over the lights of a cluster; the split heuristic is computed from them.
 #[derive(Clone, Copy)]
-struct Extent {
+struct ClusterSums {
     low: Vec3A,
     high: Vec3A,
     /// Sum of the emission axes, weighted by intensity. The axes of two-sided lights are flipped into one half-space.
@@ -247,7 +247,7 @@ struct Extent {
     count: u32,
 }
 
-impl Extent {
+impl ClusterSums {
     const NOTHING: Self =
         Self { low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, direction: Vec3A::ZERO, intensity: 0.0, count: 0 };
 
@@ -293,7 +293,7 @@ fn split(items: &mut [Item]) -> usize {
     let low = items.iter().fold(Vec3A::INFINITY, |a, i| a.min(i.centre));
     let high = items.iter().fold(Vec3A::NEG_INFINITY, |a, i| a.max(i.centre));
     let binning = [0, 1, 2].map(|axis| Binning::new(low[axis], high[axis]));
-    let mut bins = [[Extent::NOTHING; BINS]; 3];
+    let mut bins = [[ClusterSums::NOTHING; BINS]; 3];
     // Skip axes without extent, such as the vertical for the lamps of a flat ceiling.
     let axes = (0..3).filter(|&axis| binning[axis].scale > 0.0);
     for item in items.iter() {
@@ -307,12 +307,12 @@ fn split(items: &mut [Item]) -> usize {
         // For each border between two bins, compute the cost of the lights above the border, then add the cost of the
         // lights below it.
         let mut above = [0.0; BINS];
-        let mut extent = Extent::NOTHING;
+        let mut extent = ClusterSums::NOTHING;
         for i in (1..BINS).rev() {
             extent.merge(&bins[i]);
             above[i] = extent.cost();
         }
-        let mut extent = Extent::NOTHING;
+        let mut extent = ClusterSums::NOTHING;
         for i in 1..BINS {
             extent.merge(&bins[i - 1]);
             let cost = extent.cost() + above[i];

@@ -6,7 +6,7 @@
 //! dropped. Equivalent states are merged too, because a path stores its light separately for each state.
 
 use super::alphabet::{Alphabet, SCATTERS, Scatter};
-use super::parse::{Event, EventSet, Node, kind};
+use super::parse::{Event, EventSet, SyntaxTree, kind};
 use super::{EmitterAs, Expression};
 use crate::error::{Error, Result};
 use crate::render::contribution::LightSource;
@@ -194,16 +194,16 @@ impl<'a> Nfa<'a> {
     }
 
     /// Adds states and transitions that match `node`, starting from state `from`. Returns the end state.
-    fn build(&mut self, node: &'a Node, from: u32) -> Result<u32> {
+    fn build(&mut self, node: &'a SyntaxTree, from: u32) -> Result<u32> {
         match node {
-            Node::Event(set) => {
+            SyntaxTree::Event(set) => {
                 let (before, after) = (self.add()?, self.add()?);
                 self.add_epsilon(from, before);
                 self.transitions[before as usize] = Some((set, after));
                 Ok(after)
             }
-            Node::Sequence(nodes) => nodes.iter().try_fold(from, |at, node| self.build(node, at)),
-            Node::Either(nodes) => {
+            SyntaxTree::Sequence(nodes) => nodes.iter().try_fold(from, |at, node| self.build(node, at)),
+            SyntaxTree::Either(nodes) => {
                 let end = self.add()?;
                 for node in nodes {
                     let last = self.build(node, from)?;
@@ -211,7 +211,7 @@ impl<'a> Nfa<'a> {
                 }
                 Ok(end)
             }
-            Node::Repeat(node, min, max) => {
+            SyntaxTree::Repeat(node, min, max) => {
                 let mut at = from;
                 for _ in 0..*min {
                     at = self.build(node, at)?;

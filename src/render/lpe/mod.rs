@@ -65,7 +65,7 @@ pub enum EmitterAs {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expression {
     text: String,
-    tree: parse::Node,
+    tree: parse::SyntaxTree,
 }
 
 impl Expression {

@@ -37,12 +37,12 @@ pub struct Event {
 }
 
 #[derive(Clone, Debug, PartialEq)]
-pub enum Node {
+pub enum SyntaxTree {
     Event(EventSet),
-    Sequence(Vec<Node>),
-    Either(Vec<Node>),
+    Sequence(Vec<SyntaxTree>),
+    Either(Vec<SyntaxTree>),
     /// The node, with the smallest and the largest number of its repetitions; `None` for no upper limit.
-    Repeat(Box<Node>, u32, Option<u32>),
+    Repeat(Box<SyntaxTree>, u32, Option<u32>),
 }
 
 /// The set of events that match at least one of the patterns, or, if negated, none of them.
@@ -101,36 +101,36 @@ impl EventSet {
     }
 }
 
-impl Node {
+impl SyntaxTree {
     /// Calls `see` with every label of the tree and a flag: true if a pattern asks for the label, false if a pattern
     /// excludes the label.
     pub fn labels(&self, see: &mut impl FnMut(&str, bool)) {
         match self {
-            Node::Event(set) => {
+            SyntaxTree::Event(set) => {
                 for labels in set.patterns.iter().flat_map(|p| &p.labels) {
                     labels.names.iter().for_each(|n| see(n, !labels.negated && !set.negated));
                 }
             }
-            Node::Sequence(nodes) | Node::Either(nodes) => nodes.iter().for_each(|n| n.labels(see)),
-            Node::Repeat(node, ..) => node.labels(see),
+            SyntaxTree::Sequence(nodes) | SyntaxTree::Either(nodes) => nodes.iter().for_each(|n| n.labels(see)),
+            SyntaxTree::Repeat(node, ..) => node.labels(see),
         }
     }
 
     fn reverse(&mut self) {
         match self {
-            Node::Event(_) => (),
-            Node::Sequence(nodes) => {
+            SyntaxTree::Event(_) => (),
+            SyntaxTree::Sequence(nodes) => {
                 nodes.reverse();
-                nodes.iter_mut().for_each(Node::reverse);
+                nodes.iter_mut().for_each(SyntaxTree::reverse);
             }
-            Node::Either(nodes) => nodes.iter_mut().for_each(Node::reverse),
-            Node::Repeat(node, ..) => node.reverse(),
+            SyntaxTree::Either(nodes) => nodes.iter_mut().for_each(SyntaxTree::reverse),
+            SyntaxTree::Repeat(node, ..) => node.reverse(),
         }
     }
 }
 
 /// Parses an expression in light-first or camera-first order.
-pub fn parse(text: &str) -> Result<Node> {
+pub fn parse(text: &str) -> Result<SyntaxTree> {
     let characters: Vec<char> = text.chars().collect();
     if characters.len() > MAX_CHARACTERS {
         return Err(Error::argument(format!(
@@ -219,7 +219,7 @@ impl Parser<'_> {
         if self.peek().is_some() { Err(self.unexpected("an event, '|', or the end")) } else { Ok(()) }
     }
 
-    fn either(&mut self) -> Result<Node> {
+    fn either(&mut self) -> Result<SyntaxTree> {
         self.depth += 1;
         if self.depth > MAX_DEPTH {
             return Err(self.error(self.at, &format!("parentheses nest deeper than {MAX_DEPTH}")));
@@ -229,18 +229,18 @@ impl Parser<'_> {
             nodes.push(self.sequence()?);
         }
         self.depth -= 1;
-        Ok(if nodes.len() == 1 { nodes.remove(0) } else { Node::Either(nodes) })
+        Ok(if nodes.len() == 1 { nodes.remove(0) } else { SyntaxTree::Either(nodes) })
     }
 
-    fn sequence(&mut self) -> Result<Node> {
+    fn sequence(&mut self) -> Result<SyntaxTree> {
         let mut nodes = vec![self.repeated()?];
         while !matches!(self.peek(), None | Some('|' | ')')) {
             nodes.push(self.repeated()?);
         }
-        Ok(Node::Sequence(nodes))
+        Ok(SyntaxTree::Sequence(nodes))
     }
 
-    fn repeated(&mut self) -> Result<Node> {
+    fn repeated(&mut self) -> Result<SyntaxTree> {
         let node = self.atom()?;
         let (min, max) = match self.peek() {
             Some('*') => (0, None),
@@ -249,12 +249,12 @@ impl Parser<'_> {
             Some('{') => {
                 self.at += 1;
                 let counts = self.counts()?;
-                return Ok(Node::Repeat(node.into(), counts.0, counts.1));
+                return Ok(SyntaxTree::Repeat(node.into(), counts.0, counts.1));
             }
             _ => return Ok(node),
         };
         self.at += 1;
-        Ok(Node::Repeat(node.into(), min, max))
+        Ok(SyntaxTree::Repeat(node.into(), min, max))
     }
 
     /// Parses the repetition counts `n}`, `n,}` or `n,m}` after an opening brace.
@@ -290,7 +290,7 @@ impl Parser<'_> {
         })
     }
 
-    fn atom(&mut self) -> Result<Node> {
+    fn atom(&mut self) -> Result<SyntaxTree> {
         if self.next_if('(') {
             let node = self.either()?;
             return if self.next_if(')') { Ok(node) } else { Err(self.unexpected("an event, '|' or ')'")) };
@@ -301,10 +301,10 @@ impl Parser<'_> {
             while !self.next_if(']') {
                 patterns.push(self.event("an event of the set or ']'")?);
             }
-            return Ok(Node::Event(EventSet { patterns, negated }));
+            return Ok(SyntaxTree::Event(EventSet { patterns, negated }));
         }
         let pattern = if self.next_if('.') { Pattern::ANY } else { self.event("an event")? };
-        Ok(Node::Event(EventSet { patterns: vec![pattern], negated: false }))
+        Ok(SyntaxTree::Event(EventSet { patterns: vec![pattern], negated: false }))
     }
 
     /// Parses a single event: a letter, a label, or `<...>`.

@@ -192,7 +192,7 @@ fn pictures_show_the_luminance() {
 fn samples_cover_the_solid_angle() {
     let (radius, distance) = (0.15f64, 0.4f64);
     let world = world(hung(round([-0.3; 3], |_| 100.0)));
-    let receiver = light::Receiver { position: world.from_scene(Vec3::NEG_Y * distance as f32), normal: Vec3::Y };
+    let receiver = bounds::Receiver { position: world.from_scene(Vec3::NEG_Y * distance as f32), normal: Vec3::Y };
     let (batches, per_batch) = (16, 4096);
     let means: Vec<f64> = (0..batches)
         .map(|batch| {
@@ -221,7 +221,7 @@ fn samples_state_the_pdf_of_scattering_into_them() {
     for i in 0..20_000 {
         let mut random = || Vec3::new(rng.next_f32(), rng.next_f32(), rng.next_f32());
         let (position, normal) = (random() * Vec3::new(6.0, 3.0, 8.0), (random() - 0.5).normalize());
-        let (receiver, block) = (light::Receiver { position, normal }, Sampler::new(7, i).next());
+        let (receiver, block) = (bounds::Receiver { position, normal }, Sampler::new(7, i).next());
         let lights = world.lights();
         let Some(sample) = lights.sample(world.scene(), &receiver, (block.fine(0), block.get(1))) else { continue };
         let Some(light::LightEnd::Emitter(index, b)) = sample.end else { panic!("all lights have faces") };

@@ -68,20 +68,20 @@ fn independent(eye: Eye, lights: &[PunctualLight], background: f64) -> f64 {
         let (axis, c0) = (axis.as_dvec3(), c0.as_dvec3());
         let (half_c0, half_c90) = (c0 * 0.6, c0.cross(axis) * 0.15);
         let to_lamp = position.as_dvec3() - eye.position.as_dvec3();
-        let (r, sight) = (to_lamp.length(), to_lamp.normalize());
-        let (a, b) = sight.any_orthonormal_pair();
+        let (r, towards) = (to_lamp.length(), to_lamp.normalize());
+        let (a, b) = towards.any_orthonormal_pair();
         let corners = [half_c0 + half_c90, half_c0 - half_c90, -half_c0 - half_c90, half_c90 - half_c0];
         let flat = corners.map(|c| [c.dot(a), c.dot(b)]);
         let area = (0..4).map(|i| (flat[i], flat[(i + 1) % 4])).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>();
         let area = area.abs() / 2.0;
-        let gamma = (-sight.dot(axis)).clamp(-1.0, 1.0).acos();
+        let gamma = (-towards.dot(axis)).clamp(-1.0, 1.0).acos();
         let candela = panel().intensity(0.0, gamma.to_degrees());
-        if candela == 0.0 || sight.dot(ahead) <= 0.0 {
+        if candela == 0.0 || towards.dot(ahead) <= 0.0 {
             continue;
         }
-        let sigma = sight.dot(ahead).acos().to_degrees();
+        let sigma = towards.dot(ahead).acos().to_degrees();
         let upright = (DVec3::Y - ahead * ahead.y).normalize();
-        let tau = (sight - ahead * sight.dot(ahead)).normalize().dot(upright).acos().to_degrees();
+        let tau = (towards - ahead * towards.dot(ahead)).normalize().dot(upright).acos().to_degrees();
         assert!(tau <= 90.0, "all lamps are above the eye");
         let p = ((35.2 - 0.31889 * tau - 1.22 * (-2.0 * tau / 9.0).exp()) * 1e-3 * sigma
             + (21.0 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma)

@@ -90,7 +90,7 @@ const NEARLY: f64 = 0.7;
 #[derive(Clone, Copy)]
 struct Limits {
     /// Minimum contour gradient, and minimum contrast to the ring around the region, as a share of the minima in
-    /// [`Model`].
+    /// [`LampLimits`].
     contrast: f64,
     /// Maximum share of the region's pixels that may lie under negative strokes.
     negatives: f64,
@@ -133,7 +133,7 @@ pub struct Similar {
 }
 
 /// The limits that a lamp must meet, derived from the lamps under the strokes.
-struct Model {
+struct LampLimits {
     min_area: f64,
     max_area: f64,
     /// Limits on the area and the aspect, measured on a face of the room; `None` if the room has no box layout.
@@ -150,7 +150,7 @@ struct Model {
     ring: f64,
 }
 
-impl Model {
+impl LampLimits {
     /// Whether the ring of pixels around a region has about the colour of the ring around one of the lamps under the
     /// strokes.
     fn is_beside(&self, ring: &Surroundings) -> bool {
@@ -226,7 +226,7 @@ impl Search<'_> {
     /// lamp found before. Doubtful regions are tried first.
     fn add_alike(
         &self,
-        model: &Model,
+        model: &LampLimits,
         painted: &[u32],
         taken: &[bool],
         chosen: &mut Disjoint,
@@ -256,7 +256,14 @@ impl Search<'_> {
 
     /// Whether a node has the size and shape of a lamp that a stroke marks or that was found before, lies on the plane
     /// or in a hole of the plane's mask, and has the contrast to its ring that [`ALIKE`] demands.
-    fn is_alike(&self, model: &Model, painted: &[u32], similar: &Similar, taken: &[bool], node: u32) -> Result<bool> {
+    fn is_alike(
+        &self,
+        model: &LampLimits,
+        painted: &[u32],
+        similar: &Similar,
+        taken: &[bool],
+        node: u32,
+    ) -> Result<bool> {
         if !self.resembles_known_lamp(painted.iter().chain(&similar.found), node as usize) {
             return Ok(false);
         }
@@ -271,7 +278,13 @@ impl Search<'_> {
     /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
     /// strokes. For their order see [`AREA_POWER`]. Nodes that contain a chosen node, and nodes inside a lamp under a
     /// stroke, are left out.
-    fn candidates(&self, model: &Model, painted: &[u32], chosen: &Disjoint, limits: Limits) -> Result<Vec<(u32, f64)>> {
+    fn candidates(
+        &self,
+        model: &LampLimits,
+        painted: &[u32],
+        chosen: &Disjoint,
+        limits: Limits,
+    ) -> Result<Vec<(u32, f64)>> {
         let Self { tree, regions, .. } = *self;
         let mut is_painted = try_vec(tree.len(), false)?;
         painted.iter().for_each(|&n| is_painted[n as usize] = true);
@@ -291,7 +304,7 @@ impl Search<'_> {
         try_collect(candidates.into_iter().map(|(node, likeness, _)| (node, likeness)))
     }
 
-    fn model(&self, painted: &[u32]) -> Result<Option<Model>> {
+    fn model(&self, painted: &[u32]) -> Result<Option<LampLimits>> {
         let Self { tree, regions, photo, .. } = *self;
         let nobody = try_vec(tree.node_of.len(), false)?;
         let (mut rings, mut colours_around) = (Vec::new(), Vec::new());
@@ -306,7 +319,7 @@ impl Search<'_> {
         let of = |f: &dyn Fn(usize) -> f64| painted.iter().map(|&n| f(n as usize)).collect::<Vec<f64>>();
         let min_of = |values: Vec<f64>| values.into_iter().fold(f64::INFINITY, f64::min);
         let max_of = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
-        Ok(Some(Model {
+        Ok(Some(LampLimits {
             min_area: (min_of(of(&|n| regions.area[n])) * MIN_AREA_RATIO).max(MIN_AREA),
             max_area: max_of(of(&|n| regions.area[n])) * MAX_AREA_RATIO,
             surface: regions.surface.as_ref().map(|surface| {
@@ -338,7 +351,7 @@ impl Search<'_> {
     /// a lamp that the photo's border cuts may then have any aspect, and an area down to `MIN_CUT_AREA` times the
     /// minimum. Without a layout, area and breadth are measured in the photo. The minimum area in photo pixels always
     /// applies.
-    fn has_size(&self, model: &Model, node: usize) -> bool {
+    fn has_size(&self, model: &LampLimits, node: usize) -> bool {
         let regions = self.regions;
         let area = regions.area[node];
         let Some((on_surface, surface)) = model.surface.as_ref().zip(regions.surface.as_ref()) else {
@@ -399,7 +412,7 @@ impl Search<'_> {
     }
 
     /// Contrast of a node to its ring, relative to the minimum for a lamp of its size.
-    fn ring_likeness(&self, model: &Model, node: usize, ring: &Surroundings) -> f64 {
+    fn ring_likeness(&self, model: &LampLimits, node: usize, ring: &Surroundings) -> f64 {
         ring.contrast / (model.ring * sharpness(self.regions.area[node]))
     }
 
@@ -413,7 +426,7 @@ impl Search<'_> {
     /// brightness, colour and contour gradient. A value of at least 1 means that the node meets all limits. The
     /// likeness is 0 if size, shape or negative strokes rule the node out, or if the likeness in contour gradient is
     /// below [`NEARLY`].
-    fn likeness(&self, model: &Model, node: usize, limits: Limits) -> f64 {
+    fn likeness(&self, model: &LampLimits, node: usize, limits: Limits) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
         if !self.has_size(model, node) || area < limits.pixels || self.negatives[node] > limits.negatives * area {

@@ -42,6 +42,9 @@ pub struct Bounds {
 /// up to the cone angle minus 90°. [convention]
 const FULL_SPHERE: f32 = PI + FRAC_PI_2;
 
+/// Angle in radians by which cones are widened, so that rounding does not put light outside them. [rounding]
+pub const CONE_MARGIN: f64 = 0.01;
+
 impl Bounds {
     /// Returns the bounds of a flat emitting surface; `points` are corners of a polygon that encloses it.
     pub fn of_surface(points: impl IntoIterator<Item = Vec3>, normal: Vec3, two_sided: bool, intensity: f32) -> Self {
@@ -140,6 +143,11 @@ pub struct BoundsLanes {
     intensity: Lanes,
 }
 
+/// In a cone narrower than 90°, the bound on the axis is the intensity times cos(90° - `cone_angle`), and the intensity
+/// is divided by this cosine, so that the bound on the axis is the full intensity. The divisor is at least this value,
+/// which it has for a cone of 2.9°. Light sampling is unbiased for any positive value. [convention]
+const MIN_NARROW_COSINE: f32 = 0.05;
+
 /// Computed upper bounds of a cosine are rounded: the true cosine is certainly negative only if its bound is below
 /// -`MARGIN`. [rounding]
 const MARGIN: f32 = 1e-4;
@@ -177,10 +185,7 @@ impl BoundsLanes {
             lanes.cone_rotation[1][i] = cosine;
             let narrow = b.cone_angle < FRAC_PI_2;
             lanes.full_cosine[i] = if narrow { 2.0 } else { cosine };
-            // In a cone narrower than 90°, the bound on the axis is the intensity times cos(90° - `cone_angle`). Divide
-            // by this cosine, so that the bound on the axis is the full intensity. For cones narrower than 2.9°, the
-            // divisor stays at 0.05.
-            lanes.intensity[i] = b.intensity * scale / if narrow { cosine.max(0.05) } else { 1.0 };
+            lanes.intensity[i] = b.intensity * scale / if narrow { cosine.max(MIN_NARROW_COSINE) } else { 1.0 };
         }
         lanes
     }
