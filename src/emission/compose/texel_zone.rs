@@ -82,7 +82,7 @@ impl Emission {
         let left = luminaires::components(&self.mask)?;
         if left.list.is_empty() {
             return Err(Error::degenerate(format!(
-                "none of the {} lamps has a place on the surface: lessen the margin, or take zones away",
+                "none of the {} lamps has a place on the surface: reduce the margin, or remove zones",
                 found.list.len()
             )));
         }

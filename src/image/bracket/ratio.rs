@@ -1,9 +1,9 @@
 //! Measures the ratio of two exposures from the pixels that both show well.
 //!
 //! If both values v of a pixel have Poisson noise, the maximum-likelihood estimate of the ratio r = long / short is the
-//! sum of the long values divided by that of the short ones. It is unbiased if the pixels are selected by the sum of
-//! their two values: given the sum, each photon fell into the long exposure with the probability r / (1 + r). (A
-//! selection by the values themselves favours those that noise made smaller.) Pixels that do not follow the ratio,
+//! sum of the long values divided by the sum of the short values. It is unbiased if the pixels are selected by the sum
+//! of their two values: given the sum, each photon fell into the long exposure with the probability r / (1 + r). (A
+//! selection by the values themselves favours values that noise made smaller.) Pixels that do not follow the ratio,
 //! because something moved, get Tukey's weights. The error comes from the spread between blocks of the photo, so noise
 //! that is correlated between neighbours does not make it too small.
 
@@ -132,9 +132,9 @@ fn is_well_exposed(s: &Sample, ratio: f64, clip: f32) -> bool {
 }
 
 /// Sets Tukey's weights for the residuals `long - ratio * short`, relative to the square root of their expected
-/// variance, and the slopes of the weighted residuals. The variance depends equally on what both photos say of the
-/// light, so that edges that lie differently in the photos have no preferred sign.
-/// `sizes` is working memory of as many elements.
+/// variance, and the slopes of the weighted residuals. The variance depends equally on the values of both photos, so
+/// that edges that lie differently in the photos have no preferred sign.
+/// `sizes` is working memory with an element for each sample.
 fn reweigh(samples: &[Sample], ratio: f64, sizes: &mut [f64], weights: &mut [[f64; 2]]) {
     let residual = |s: &Sample| {
         let (short, long) = (f64::from(s.short), f64::from(s.long));

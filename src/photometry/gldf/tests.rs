@@ -202,7 +202,7 @@ fn written_containers_are_read_back() {
     let sizes = [[0.0; 3], [-0.4, -0.4, 0.0], [-0.4, -0.4, 0.25], [0.6, 1.2, 0.0]];
     let lamps = sizes.map(|size| Luminaire::lambertian("panel", 3456.7, size));
     for l in lamps.into_iter().chain([uneven]) {
-        // The intensities pass through the EULUMDAT file, and so are those that it gives.
+        // The intensities pass through the EULUMDAT file, so they equal the intensities that this file gives.
         let of_ldt = ldt::read(ldt::write(&l).unwrap().as_bytes()).unwrap();
         let again = read(&write(&l, NOW).unwrap(), None).unwrap();
         assert_eq!((again.luminaire, again.variants), (of_ldt, 1));
@@ -388,7 +388,7 @@ fn floods_of_photometries_are_refused() {
     let most = read(&container(&with_channels(63)), Some("Channels")).unwrap().luminaire;
     assert!((most.flux() / 6500.0 - 1.0).abs() < 1e-3, "{}", most.flux());
     assert_eq!(read(&container(&with_channels(31)), Some("twice")).unwrap().emitters, 2);
-    // A file with as many intensities as are read, of which two are more.
+    // One file with this number of intensities is read; two such files exceed the limit.
     let large = Luminaire {
         planes: (0..2048).map(|i| f64::from(i) * 360.0 / 2048.0).collect(),
         gammas: (0..2048).map(|i| f64::from(i) * 180.0 / 2047.0).collect(),
