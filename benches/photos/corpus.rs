@@ -107,9 +107,15 @@ pub fn load(source: &Source) -> Result<Photo, String> {
 fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
     let [width, height] = [photo.width, photo.height];
     let listed = items(&record["luminaires"]);
-    let mut lamps = distinct(listed.iter().filter_map(lamp).collect(), [width, height]);
-    let centres =
-        listed.iter().filter(|item| lamp(item).is_none()).filter_map(|item| point(&item["centre_px"])).collect();
+    let drawn_anew = redrawn(name);
+    let is_redrawn = !drawn_anew.is_empty();
+    let (mut lamps, centres) = if is_redrawn {
+        (drawn_anew, Vec::new())
+    } else {
+        let centre_only = listed.iter().filter(|item| lamp(item).is_none());
+        let centres = centre_only.filter_map(|item| point(&item["centre_px"])).collect();
+        (distinct(listed.iter().filter_map(lamp).collect(), [width, height]), centres)
+    };
     let mut lights = Mask::new(width, height);
     lamps.iter().flat_map(|lamp| &lamp.polygons).for_each(|polygon| lights.fill(polygon));
     // Add the lamps that were measured in the ceiling seen straight on; the list by hand leaves some of them out.
@@ -118,8 +124,10 @@ fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
 
     let mut parts = Vec::new();
     for lamp in &mut lamps {
-        let shown: Vec<Vec<u32>> =
-            lamp.polygons.iter().flat_map(|polygon| outline::parts(photo, polygon, &lights)).collect();
+        let parts_of = |polygon: &Vec<DVec2>| {
+            if is_redrawn { vec![pixels(polygon, [width, height])] } else { outline::parts(photo, polygon, &lights) }
+        };
+        let shown: Vec<Vec<u32>> = lamp.polygons.iter().flat_map(parts_of).collect();
         lamp.pixels = shown.concat();
         parts.extend(shown);
     }
@@ -170,14 +178,36 @@ fn thickness(polygon: &[DVec2]) -> f64 {
     Shape::of(polygon, None).map_or(0.0, |shape| shape.sides.y + 1.0)
 }
 
+/// The numbers in the lines of a list that begin with `name`.
+fn numbers_of(list: &str, name: &str) -> Vec<Vec<f64>> {
+    let lines = list.lines().map(str::split_whitespace);
+    let of_name = lines.filter_map(|mut words| (words.next() == Some(name)).then_some(words));
+    of_name.map(|words| words.filter_map(|word| word.parse().ok()).collect()).collect()
+}
+
+/// The lamps of a photo that are drawn anew (`redrawn.txt`); empty for most photos.
+fn redrawn(name: &str) -> Vec<Lamp> {
+    let corners = |numbers: &Vec<f64>| numbers.chunks_exact(2).map(|c| DVec2::new(c[0], c[1])).collect();
+    let polygons: Vec<Vec<DVec2>> = numbers_of(include_str!("redrawn.txt"), name).iter().map(corners).collect();
+    let lamp = |polygon: Vec<DVec2>| {
+        let centre = polygon.iter().sum::<DVec2>() / polygon.len() as f64;
+        Lamp { centre, polygons: vec![polygon], pixels: Vec::new() }
+    };
+    polygons.into_iter().map(lamp).collect()
+}
+
+/// The pixels inside a polygon, as `y * width + x`.
+fn pixels(polygon: &[DVec2], [width, height]: [usize; 2]) -> Vec<u32> {
+    let mut mask = Mask::new(width, height);
+    mask.fill(polygon);
+    (0..mask.on.len()).filter(|&i| mask.on[i]).map(|i| i as u32).collect()
+}
+
 /// Mask of the rectangles with lamps that the lists leave out (`unlisted.txt`); `None` if the photo has none.
 fn unlisted(name: &str, [width, height]: [usize; 2]) -> Option<Mask> {
     let mut mask = Mask::new(width, height);
-    for line in include_str!("unlisted.txt").lines() {
-        let mut words = line.split_whitespace();
-        let is_wanted = words.next() == Some(name);
-        let numbers: Vec<f64> = words.filter_map(|word| word.parse().ok()).collect();
-        if let (true, &[x0, y0, x1, y1]) = (is_wanted, &numbers[..]) {
+    for numbers in numbers_of(include_str!("unlisted.txt"), name) {
+        if let &[x0, y0, x1, y1] = &numbers[..] {
             mask.fill(&[DVec2::new(x0, y0), DVec2::new(x1, y0), DVec2::new(x1, y1), DVec2::new(x0, y1)]);
         }
     }

@@ -83,20 +83,14 @@ const MARGIN: f64 = 1.05;
 
 /// A face of the room is common to a set of pixels if at least this fraction of them lies on it. [convention]
 const SHARED: f64 = 0.9;
-/// Maximum factor by which a room may be enlarged to contain lamps beyond it. If a larger factor is necessary, the room
-/// stays as it is. `MAX_GROWTH_UNCERTAIN` applies if the room layout is uncertain: if strokes for the plane are
-/// missing, or if the photo's lines do not determine the camera. [bench photos:tune, photos:real]
-const MAX_GROWTH: f64 = 1.25;
-const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
-
 impl Layout {
     /// Returns the face on which most of the given pixels lie.
-    pub fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
+    pub(super) fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {
         self.most_common_face(perspective, pixels).0
     }
 
     /// Returns the face on which nearly all of the given pixels lie; `None` if there is no such face.
-    pub fn shared_face(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Option<Face> {
+    pub(super) fn shared_face(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Option<Face> {
         let (face, share) = self.most_common_face(perspective, pixels);
         (share >= SHARED).then_some(face)
     }
@@ -108,21 +102,6 @@ impl Layout {
         pixels.for_each(|p| counts[self.hit(to_room * perspective.ray(p)).0 as usize] += 1);
         let fullest = (0..Face::COUNT).rev().max_by_key(|&k| counts[k]).unwrap_or(0);
         (Face::ALL[fullest], counts[fullest] as f64 / counts.iter().sum::<usize>().max(1) as f64)
-    }
-
-    /// Moves the other faces of the room away until all given pixels lie on `face`, which keeps its place. Returns
-    /// `None` if a face would have to move by more than the factor `MAX_GROWTH`, or `MAX_GROWTH_UNCERTAIN` if the
-    /// layout is uncertain.
-    pub fn plausibly_enlarged(
-        &self,
-        face: Face,
-        perspective: &Perspective,
-        pixels: impl Iterator<Item = DVec2>,
-        is_uncertain: bool,
-    ) -> Option<Self> {
-        let (layout, growth) = self.enlarged(face, perspective, pixels);
-        let max_growth = if is_uncertain { MAX_GROWTH_UNCERTAIN } else { MAX_GROWTH };
-        (growth <= max_growth).then_some(layout)
     }
 
     /// Moves the other faces of the room away until all given pixels lie on `face`, which keeps its place. Returns the

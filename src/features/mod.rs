@@ -32,6 +32,7 @@ mod assemble;
 mod box_room;
 mod clean;
 mod depth;
+mod enlarge;
 mod frustum;
 mod grow;
 mod input;
@@ -48,6 +49,7 @@ mod tests;
 mod warnings;
 
 pub use box_room::{Face, Layout};
+pub use enlarge::LampsBeyond;
 pub use frustum::Frustum;
 pub use grow::Surfaces;
 pub use input::{CHANNELS, DepthKind, DepthMap, DepthSource, Input, NORMAL, POSITION, Params, PlaneStroke, RoomView};

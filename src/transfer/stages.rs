@@ -9,7 +9,6 @@ use crate::render::World;
 use crate::scene::Camera;
 use crate::scene::surface::{self, Surface};
 use crate::schedule::{self, Fixture};
-use crate::segment::Stroke;
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
 use std::sync::Arc;
@@ -130,20 +129,16 @@ impl Transfer {
             return Ok(false);
         };
         let Some(layout) = features.layout else { return Ok(false) };
-        let centre = |p: usize| lights.mask.centre_of(p);
-        let lit = (0..lights.mask.data.len()).filter(|&p| lights.mask.data[p] > 0.5);
-        let face = layout.face_of(&view.perspective, lit.map(centre));
         let is_proposed = plane.is_proposed && self.input.strokes.plane.is_empty();
-        let is_uncertain = plane.is_proposed || self.results.view_by_lines.is_some();
-        let enlarged = |lamps: &[Stroke]| {
-            let pixels = lamps.iter().flat_map(|lamp| &lamp.pixels).map(|&p| centre(p as usize));
-            layout.plausibly_enlarged(face, &view.perspective, pixels, is_uncertain)
+        let beyond: Vec<&[u32]> = lights.beyond.iter().map(|lamp| &lamp.pixels[..]).collect();
+        let lamps = features::LampsBeyond {
+            mask: &lights.mask,
+            beyond: &beyond,
+            is_uncertain: plane.is_proposed || self.results.view_by_lines.is_some(),
+            may_leave_out: is_proposed,
         };
-        let mut beyond = lights.beyond.clone();
-        // In a proposal, a far region that is no lamp must not keep the others out.
-        beyond.retain(|lamp| !is_proposed || enlarged(std::slice::from_ref(lamp)).is_some());
-        let Some(layout) = enlarged(&beyond).filter(|_| !beyond.is_empty()) else { return Ok(false) };
-        self.results.beyond = beyond;
+        let Some((layout, regions)) = layout.enlarged_for(&view.perspective, &lamps) else { return Ok(false) };
+        self.results.beyond = regions.into_iter().map(|k| lights.beyond[k].clone()).collect();
         self.compute_features(Some(layout), job.part(0.0, 0.5))?;
         self.segment_plane(job.part(0.5, 0.75))?;
         self.segment_lights(job.part(0.75, 1.0))?;
@@ -154,23 +149,13 @@ impl Transfer {
         let photo = need(&self.input.photo, "set the photo")?;
         let view = need(&self.results.view, "run stage View")?;
         let plane = need(&self.results.plane, "run stage Plane")?;
-        let axes = self.params.unwarp.axes.or_else(|| self.laid_out_axes());
+        let layout = self.results.features.as_ref().and_then(|features| features.layout);
+        let laid_out = || layout?.axes_along(&view.perspective, &plane.mask);
+        let axes = self.params.unwarp.axes.or_else(laid_out);
         let params = rectify::UnwarpParams { axes, ..self.params.unwarp.clone() };
         let unwarped = rectify::unwarp(photo, view, &plane.mask, &params, job)?;
         self.results.unwarped = Some(Arc::new(unwarped));
         Ok(())
-    }
-
-    /// Indices of the two room axes along the face of the room's layout that holds the plane. `None` if there is no
-    /// layout, or if the plane lies on several faces.
-    fn laid_out_axes(&self) -> Option<[usize; 2]> {
-        let Results { view: Some(view), features: Some(features), plane: Some(plane), .. } = &self.results else {
-            return None;
-        };
-        let mask = &plane.mask;
-        let marked = (0..mask.data.len()).filter(|&p| mask.data[p] > 0.5).map(|p| mask.centre_of(p));
-        let normal = features.layout?.shared_face(&view.perspective, marked)?.axis();
-        Some([(normal + 1) % 3, (normal + 2) % 3])
     }
 
     pub(super) fn synthesise(&mut self, job: Job) -> Result<()> {
