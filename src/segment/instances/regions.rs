@@ -144,16 +144,28 @@ impl OnFace {
     /// Whether two nodes lie in a row along u or along v, the axes of the room's face. For a row along u, their centres
     /// must differ in v by at most `share` times the larger of their extents in v.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
-        let moments = |node: usize, first: &[f64], second: &[f64]| {
-            let area = self.area[node].max(f64::MIN_POSITIVE);
-            let mean = first[node] / area;
-            (mean, 12.0 * (second[node] / area - mean * mean).max(0.0))
-        };
-        let near = |first: &[f64], second: &[f64]| {
-            let ((at, square), (other, other_square)) = (moments(a, first, second), moments(b, first, second));
-            (at - other).abs() <= share * square.max(other_square).sqrt()
-        };
-        near(&self.u, &self.uu) || near(&self.v, &self.vv)
+        self.across(a, b)
+            .into_iter()
+            .any(|[(at, extent), (other, other_extent)]| (at - other).abs() <= share * extent.max(other_extent))
+    }
+
+    /// Whether two nodes lie in a row along u or along v, and have equal extents across this row. Both the centres and
+    /// the extents may differ by at most `share` times the larger extent.
+    pub fn are_in_line(&self, a: usize, b: usize, share: f64) -> bool {
+        self.across(a, b).into_iter().any(|[(at, extent), (other, other_extent)]| {
+            (at - other).abs().max((extent - other_extent).abs()) <= share * extent.max(other_extent)
+        })
+    }
+
+    /// Centres and extents of two nodes, across a row along v and across a row along u.
+    fn across(&self, a: usize, b: usize) -> [[(f64, f64); 2]; 2] {
+        [(&self.u, &self.uu), (&self.v, &self.vv)].map(|(first, second)| {
+            [a, b].map(|node| {
+                let area = self.area[node].max(f64::MIN_POSITIVE);
+                let mean = first[node] / area;
+                (mean, (12.0 * (second[node] / area - mean * mean)).max(0.0).sqrt())
+            })
+        })
     }
 
     /// Aspect of a node, measured on the face of the room: the ratio of the axes of the ellipse with the node's second

@@ -96,14 +96,24 @@ struct Limits {
     negatives: f64,
     /// Minimum number of pixels of the region.
     pixels: f64,
+    /// Factor of [`LampLimits::min_area`].
+    area: f64,
+    /// Amount of L* by which the region may be darker than the least L* of the model.
+    dimmer: f64,
 }
 
 /// Limits for any region: the minima of the model as they are, no pixel under negative strokes, any size. [convention]
-const STRICT: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 0.0 };
+const STRICT: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 0.0, area: 1.0, dimmer: 0.0 };
 /// Limits for a region with the size and shape of a lamp that is found already. Bloom on a bright ceiling lowers the
 /// contrast of lamps, and negative strokes painted in a hurry graze them. Regions of fewer than 30 pixels have no clear
 /// shape. [bench photos:tune]
-const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0 };
+const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0, area: 1.0, dimmer: 0.0 };
+/// Limits for a region that continues a row of lamps of equal width. Louvres make lamps dimmer the flatter one looks at
+/// them, so the far lamps of a row may be much darker than the near ones. [bench photos:nostrokes]
+const IN_LINE: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 30.0, area: 0.0, dimmer: 30.0 };
+/// Maximum difference of the widths of two such lamps, measured across the row, as a share of the larger width.
+/// [bench photos:nostrokes]
+const EQUAL_WIDTH: f64 = 0.15;
 
 /// Variance, in square pixels, of the blur of the photo plus the blur before the gradient is computed.
 /// [judged on 44 photos]
@@ -219,7 +229,44 @@ impl Search<'_> {
             }
         }
         self.add_alike(&model, painted, &taken, &mut chosen, &mut similar, job)?;
+        self.add_in_line(&model, painted, &taken, &mut chosen, &mut similar, job)?;
         Ok(similar)
+    }
+
+    /// Adds the regions that meet the limits [`IN_LINE`] and continue a row of lamps: they are as wide across the row as
+    /// a lamp under a stroke or a lamp found before. Regions off the plane are added to `beyond`.
+    fn add_in_line(
+        &self,
+        model: &LampLimits,
+        painted: &[u32],
+        taken: &[bool],
+        chosen: &mut Disjoint,
+        similar: &mut Similar,
+        job: Job,
+    ) -> Result<()> {
+        let Some(surface) = self.regions.surface.as_ref().filter(|_| self.is_proposed) else { return Ok(()) };
+        let candidates = self.candidates(model, painted, chosen, IN_LINE)?;
+        for (k, &(node, likeness)) in candidates.iter().enumerate() {
+            if k % 256 == 0 {
+                job.check()?;
+            }
+            let mut lamps = painted.iter().chain(&similar.found);
+            let has_shape = |lamp: u32| {
+                self.is_cut(lamp) || self.lamps_of_equal_shape(std::iter::once(&lamp), node as usize).next().is_some()
+            };
+            let is_in_line =
+                |&lamp: &u32| surface.are_in_line(node as usize, lamp as usize, EQUAL_WIDTH) && has_shape(lamp);
+            if likeness < 1.0 || !chosen.admits(node) || self.is_cut(node) || !lamps.any(is_in_line) {
+                continue;
+            }
+            let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else { continue };
+            if self.ring_likeness(model, node as usize, &ring) >= IN_LINE.contrast {
+                let is_on_plane = ring.on_plane >= ON_PLANE || self.is_on_face(node as usize);
+                if is_on_plane { &mut similar.found } else { &mut similar.beyond }.push(node);
+                chosen.choose(node);
+            }
+        }
+        Ok(())
     }
 
     /// Adds the regions that meet the limits [`ALIKE`] and have the size and shape of a lamp under a stroke or of a
@@ -351,11 +398,12 @@ impl Search<'_> {
     /// a lamp that the photo's border cuts may then have any aspect, and an area down to `MIN_CUT_AREA` times the
     /// minimum. Without a layout, area and breadth are measured in the photo. The minimum area in photo pixels always
     /// applies.
-    fn has_size(&self, model: &LampLimits, node: usize) -> bool {
+    fn has_size(&self, model: &LampLimits, limits: Limits, node: usize) -> bool {
+        let min_area = limits.area * model.min_area;
         let regions = self.regions;
         let area = regions.area[node];
         let Some((on_surface, surface)) = model.surface.as_ref().zip(regions.surface.as_ref()) else {
-            return (model.min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
+            return (min_area..=model.max_area).contains(&area) && regions.axes(node)[1] <= model.max_breadth;
         };
         if surface.area[node] > on_surface.area[1] {
             return false;
@@ -363,7 +411,7 @@ impl Search<'_> {
         let is_whole = surface.area[node] >= on_surface.area[0]
             && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
         let may_be_cut = || surface.area[node] >= MIN_CUT_AREA * on_surface.area[0] && self.is_cut(node as u32);
-        area >= model.min_area && (is_whole || may_be_cut())
+        area >= min_area && (is_whole || may_be_cut())
     }
 
     /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
@@ -429,7 +477,8 @@ impl Search<'_> {
     fn likeness(&self, model: &LampLimits, node: usize, limits: Limits) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if !self.has_size(model, node) || area < limits.pixels || self.negatives[node] > limits.negatives * area {
+        if !self.has_size(model, limits, node) || area < limits.pixels || self.negatives[node] > limits.negatives * area
+        {
             return 0.0;
         }
         let sharpness = sharpness(area);
@@ -441,7 +490,7 @@ impl Search<'_> {
         let chroma = model.colours.iter().map(|c| (c[1] - a).hypot(c[2] - b)).fold(f64::INFINITY, f64::min);
         // Lower the limit for small lamps: blur takes the share 1 - `sharpness` of their contrast. `model.ring / RING`
         // is the median contrast, in L*, that the lamps under the strokes would have without blur.
-        let min_lightness = model.min_lightness - (1.0 - sharpness) * model.ring / RING;
+        let min_lightness = model.min_lightness - limits.dimmer - (1.0 - sharpness) * model.ring / RING;
         let lightness = l / min_lightness.max(1.0);
         // A relative shortfall below the minimum L* counts tenfold, because bright colours differ little in L*.
         let lightness = if lightness < 1.0 { 1.0 - 10.0 * (1.0 - lightness) } else { lightness };
