@@ -156,6 +156,7 @@ luxfer_status luxfer_render_set_scene(luxfer_render *render, luxfer_scene *scene
 /**
  * Sets the camera. camera may be one that luxfer_scene_get_camera has written, or NULL, the default, for the first
  * camera of the scene. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
  */
 luxfer_status luxfer_render_set_camera(luxfer_render *render,
                                        const luxfer_camera_params *camera);
@@ -343,8 +344,9 @@ luxfer_status luxfer_render_set_aovs(luxfer_render *render, uint32_t flags);
 luxfer_status luxfer_render_get_layer_count(luxfer_render *render, uint32_t *count);
 
 /**
- * Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes including the zero; index
- * starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
+ * Copies a layer's name into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero; index
+ * starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity
+ * is 0. Any thread.
  * LUXFER_NOT_FOUND if there is no such layer.
  */
 luxfer_status luxfer_render_get_layer_name(luxfer_render *render,

@@ -65,8 +65,9 @@ pub struct luxfer_lamps_params {
     pub free_colour: u32,
     /// Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity.
     pub max_scale: f64,
-    /// Weight of the regularisation, which pulls all powers towards one value, in [1e-9, 1e3]; default 1e-6. With a
-    /// small weight the goals are met, with a large weight the powers are nearly equal.
+    /// Weight of the regularisation, which pulls all powers towards the equal power that meets the goals best, in
+    /// [1e-9, 1e3]; default 1e-6. With a small weight the goals are met, with a large weight the powers are nearly
+    /// equal.
     pub regularisation: f64,
     /// Tolerance of the goals, in [1e-6, 1]; default 0.01. A goal counts as met if its light misses the target by at
     /// most tolerance times the target's brightest channel, plus the half-width of the 95 % confidence interval of the

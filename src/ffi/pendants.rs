@@ -95,14 +95,15 @@ pub struct luxfer_pendants_params {
     /// Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If you keep the default because
     /// the height is unknown, the unit of all lengths, known_length included, is the true height instead of the metre.
     pub ceiling: f64,
-    /// Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1.
+    /// Standard deviation in pixels of the x and of the y of each point in the array suspensions of
+    /// luxfer_pendants_find, in [0.05, 100]; default 1.
     pub suspension_error: f64,
     /// Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
     /// a rectification. Photo and masks must then be free of lens distortion.
     pub focal: f64,
     /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
-    /// for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It is 0 only
-    /// if the rectification was given the focal length.
+    /// for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. This estimate
+    /// is 0 only if the caller gave the rectification the focal length.
     pub focal_error: f64,
     /// Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5]; default
     /// 0. Not used with a rectification, which has its own value.

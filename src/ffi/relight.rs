@@ -272,6 +272,7 @@ pub unsafe extern "C" fn luxfer_relight_set_scene(
 
 /// Sets rgb, the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
 /// LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a channel is out of range.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_target(relight: *mut luxfer_relight, rgb: *const f32) -> luxfer_status {

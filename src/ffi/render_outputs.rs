@@ -165,8 +165,9 @@ pub unsafe extern "C" fn luxfer_render_get_layer_count(render: *mut luxfer_rende
     })
 }
 
-/// Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes including the zero; index
-/// starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
+/// Copies a layer's name into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero; index
+/// starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity
+/// is 0. Any thread.
 /// LUXFER_NOT_FOUND if there is no such layer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_layer_name(

@@ -245,9 +245,11 @@ pub unsafe extern "C" fn luxfer_scene_create(
     })
 }
 
-/// Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is
-/// replaced only once the new one is complete. Any thread.
-/// LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
+/// Saves a scene as a GLB file that contains all textures, as PNG with 8 bits per channel; path is UTF-8 and ends in
+/// .glb. The environment and meshes without triangles are left out. An existing file is replaced only once the new one
+/// is complete. Any thread.
+/// LUXFER_INVALID_ARGUMENT for another ending, or if the scene is not valid; LUXFER_UNSUPPORTED if a texture transform
+/// has shear, or the file would exceed 4 GiB; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *const c_char) -> luxfer_status {
     enter(scene, |object| {
@@ -259,9 +261,10 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB through write, a function of the caller, which receives the bytes and the pointer user. Any
-/// thread.
-/// LUXFER_IO if the function returns anything but 0.
+/// Writes a scene as GLB, as luxfer_scene_export does, through write, a function of the caller, which receives the
+/// bytes and the pointer user. Any thread.
+/// LUXFER_IO if the function returns anything but 0; LUXFER_INVALID_ARGUMENT and LUXFER_UNSUPPORTED as for
+/// luxfer_scene_export.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export_memory(
     scene: *mut luxfer_scene,
@@ -307,9 +310,10 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
 
 /// Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
 /// the radiance of the environment is rgb in cd/m², each channel in [0, 1e15], from every direction. Otherwise the
-/// radiance is an equirectangular image in linear values, multiplied by rgb. The centre of the image is towards -z, its
-/// top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn in proportion to
-/// the brightness of the image. The image is copied. Any thread.
+/// radiance is an equirectangular image in linear values, multiplied by rgb; of its channels, the first three count, or
+/// the first one as grey if there are fewer than three. The centre of the image is towards -z, its top towards +y, the
+/// centre of its right half towards +x. Light samples of the renderer are drawn in proportion to the brightness of the
+/// image. The image is copied. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]

@@ -2,7 +2,9 @@
 //!
 //! Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added.
 //! A function writes its outputs only if it returns LUXFER_OK. luxfer_context_get_last_error describes a failure in
-//! words.
+//! words. The comment of a function lists its errors. Two errors are not repeated there: every function returns
+//! LUXFER_INVALID_ARGUMENT for a NULL pointer unless its comment allows NULL, and for an argument that is none of the
+//! constants of its type.
 
 use std::ffi::c_char;
 

@@ -41,8 +41,8 @@ pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
 /// to [0, 1].
 pub const LUXFER_GUIDE_DATA: luxfer_guide_range = 1;
 
-/// Flag of luxfer_stylize_add_guides: add the normals. Without it, they are used if the strokes of the artwork follow
-/// the shapes.
+/// Flag of luxfer_stylize_add_guides: add the normals. Without this flag, the normals are used only if the strokes of
+/// the artwork follow the shapes.
 pub const LUXFER_GUIDES_WITH_NORMALS: u32 = 1;
 /// Flag of luxfer_stylize_add_guides: add the edges, for shapes finer than the brush strokes.
 pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
@@ -175,8 +175,8 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
 
 /// Adds a guide, or replaces the guide of the same name. The image source shows the exemplar scene, and the image
 /// target shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the
-/// target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). weight, in
-/// [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
+/// target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). name is UTF-8.
+/// weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
 ///
 /// All sources must have one size, and all targets one size. All guides together have at most 60 channels. In a
 /// target, values that are not finite count as 0; pixels of a source with such values are not used.
@@ -324,10 +324,10 @@ pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
 /// light has changed, at silhouettes that have moved, and on places that come into view. Any thread.
 ///
 /// The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
-/// position that the pixel's surface point had in the previous frame, x and y in pixels; NaN where the point was not
-/// visible. luxfer_guides_get_motion computes it; a pass of motion vectors of another renderer serves too. If motion
-/// is NULL, each job starts from nothing. If the motion contradicts the guides, luxfer_get_warnings of stylize has a
-/// warning after the job.
+/// position that the pixel's surface point had in the previous frame, x (right) and y (down) in pixels; NaN where the
+/// point was not visible. luxfer_guides_get_motion computes it; a pass of motion vectors of another renderer serves
+/// too. If motion is NULL, each job starts from nothing. If the motion contradicts the guides, luxfer_get_warnings of
+/// stylize has a warning after the job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_motion(
     stylize: *mut luxfer_stylize,

@@ -1,9 +1,9 @@
 //! Warnings
 //!
-//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect
-//! with its figure and limit, the place in the photo, and the remedy. Each stage that has warnings has a list of them,
-//! a transfer has the lists of all its stages, and a scene has a list. A list is a copy: it does not change when the
-//! stage is started again. An empty list does not prove that a result is right.
+//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect, a
+//! measure of it (the severity) with the limit that it has passed, the place in the photo, and the remedy. Each stage
+//! that has warnings has a list of them, a transfer has the lists of all its stages, and a scene has a list. A list is
+//! a copy: it does not change when the stage is started again. An empty list does not prove that a result is right.
 
 use super::context::Context;
 use super::emission::luxfer_emission;
@@ -147,8 +147,8 @@ pub struct luxfer_warning {
     pub stage: luxfer_stage,
     /// 1 if the warning points to a place, else 0.
     pub has_place: u32,
-    /// The figure that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what it
-    /// measures.
+    /// The number that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what this
+    /// number measures.
     pub severity: f64,
     /// The limit that the severity has passed: an upper limit, unless the comment of the LUXFER_WARNING_ value says
     /// that the severity is below the limit.
@@ -156,8 +156,8 @@ pub struct luxfer_warning {
     /// The place, x and y in pixels of the photo; for a luxfer_guides or a luxfer_stylize, in pixels of the target or,
     /// where the comment of the LUXFER_WARNING_ value says so, of the artwork. 0 if the warning has no place.
     pub place: [f64; 2],
-    /// The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as the
-    /// luxfer_warnings.
+    /// The defect: an English sentence, which for most warnings states the value of severity, in zero-terminated UTF-8.
+    /// The string lives as long as the luxfer_warnings.
     pub message: *const c_char,
     /// The remedy: an English sentence in zero-terminated UTF-8. The string lives as long as the luxfer_warnings.
     pub advice: *const c_char,
