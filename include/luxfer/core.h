@@ -63,9 +63,10 @@ const char *luxfer_get_version_string(void);
  *
  * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added.
  * A function writes its outputs only if it returns LUXFER_OK. luxfer_context_get_last_error describes a failure in
- * words. The comment of a function lists its errors. Two errors are not repeated there: every function returns
- * LUXFER_INVALID_ARGUMENT for a NULL pointer unless its comment allows NULL, and for an argument that is none of the
- * constants of its type.
+ * words. The comment of a function lists its errors. Some errors hold for every function, even if its comment does not
+ * name them: LUXFER_INVALID_ARGUMENT for a NULL pointer unless the comment allows NULL, and for an argument that is
+ * none of the constants of its type; LUXFER_OUT_OF_MEMORY if the memory budget of the context, or the machine, is used
+ * up.
  * ================================================================================================================== */
 
 /** The result of a call: LUXFER_OK, or the reason for the failure. */
@@ -327,6 +328,8 @@ luxfer_status luxfer_context_get_last_error(luxfer_context *context,
  *
  * Handles of every kind are reference counted: a create function returns one reference, luxfer_retain adds one,
  * luxfer_release removes one, and removing the last reference frees the object. Objects may be released in any order.
+ * An object that is given an image, a scene or another object as an input holds a reference of its own, so the caller
+ * may release the input at once.
  * ================================================================================================================== */
 
 /**
@@ -385,7 +388,7 @@ typedef struct luxfer_image_view {
     uint32_t width;
     /** Height in pixels, in [1, 65536]; default 0: the caller must set it. */
     uint32_t height;
-    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error. */
+    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags give LUXFER_INVALID_ARGUMENT. */
     uint32_t flags;
     /** Must be 0. */
     uint32_t reserved;
@@ -825,9 +828,10 @@ luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
  *
  * Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
  * runs on threads of the library. The job works on the inputs as they are at its start: changing or releasing them
- * later does not affect the job. While a job runs, its object refuses changes and further jobs
- * (LUXFER_INVALID_OPERATION). Read the results from the object after the job has succeeded. Releasing the last
- * reference to a running job cancels the job and waits until it has ended.
+ * later does not affect the job. A function that sets an input makes only the checks that its comment names. The job
+ * checks whether all inputs are valid and fit together, and otherwise ends with LUXFER_INVALID_ARGUMENT. While a job
+ * runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after
+ * the job has succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
  *
  * Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
  * waiting job at once. Only two calls wait for a job: luxfer_job_wait, and luxfer_release of the last reference to a

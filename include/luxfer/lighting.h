@@ -1063,7 +1063,7 @@ typedef struct luxfer_preset {
     double glare;
     /** Minimum uniformity U0 (minimum / mean illuminance) of the task area. */
     double uniformity;
-    /** Minimum colour rendering index. */
+    /** Minimum general colour rendering index Ra. */
     double rendering;
     /** Minimum mean illuminance of the walls, in lux; 0 if there is no requirement. */
     double walls;

@@ -333,7 +333,7 @@ luxfer_status luxfer_render_set_emitter_as(luxfer_render *render,
 
 /**
  * Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for no AOV. Any thread.
- * LUXFER_INVALID_OPERATION while a job runs.
+ * LUXFER_INVALID_ARGUMENT for unknown flags; LUXFER_INVALID_OPERATION while a job runs.
  */
 luxfer_status luxfer_render_set_aovs(luxfer_render *render, uint32_t flags);
 
@@ -347,7 +347,7 @@ luxfer_status luxfer_render_get_layer_count(luxfer_render *render, uint32_t *cou
  * Copies a layer's name into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero; index
  * starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity
  * is 0. Any thread.
- * LUXFER_NOT_FOUND if there is no such layer.
+ * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
  */
 luxfer_status luxfer_render_get_layer_name(luxfer_render *render,
                                            uint32_t index,

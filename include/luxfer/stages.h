@@ -113,8 +113,9 @@ typedef struct luxfer_rectify_params {
     /**
      * Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
      * distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN, the
-     * default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least two
-     * standard deviations, and the lines then meet better in vanishing points. 0: no distortion is undone.
+     * default: the distortion is measured. It is undone if it lies between -0.1 and -0.02, if its absolute value is at
+     * least two standard deviations, and if the lines meet better in vanishing points without it. 0: no distortion is
+     * undone.
      */
     double distortion;
 } luxfer_rectify_params;
@@ -237,7 +238,7 @@ typedef struct luxfer_rectify_report {
  */
 #define LUXFER_METRIC_VISIBLE_LINE 1
 
-/** Set by the caller. */
+/** The caller has set the focal length. */
 #define LUXFER_FOCAL_GIVEN 0
 
 /** Estimated, mainly from the vanishing points of orthogonal directions. */

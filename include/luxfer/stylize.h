@@ -299,9 +299,9 @@ typedef int32_t luxfer_stylize_preset;
 
 /**
  * A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MAJORITY. The proportion varies, so that each place of
- * the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
- * pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
- * luxfer_stylize_report.unblended_share is the share of whole pixels.
+ * the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus copies
+ * pixels of the artwork unchanged in rough paint, has soft transitions in smooth paint, and has edges as sharp as in
+ * the artwork. luxfer_stylize_report.unblended_share is the share of unchanged pixels.
  */
 #define LUXFER_STYLIZE_VOTE_ADAPTIVE 4
 
@@ -360,8 +360,8 @@ typedef int32_t luxfer_guide_range;
 #define LUXFER_GUIDE_LIGHT 0
 
 /**
- * Data, such as normals, object codes and edges. The range of values that source and target have together is scaled
- * to [0, 1].
+ * Data, such as normals, object codes and edges. The range of values that all channels of source and target have
+ * together is scaled to [0, 1].
  */
 #define LUXFER_GUIDE_DATA 1
 
@@ -408,8 +408,8 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
  * normals guide the picture too, so that its strokes follow the shapes of the target; see the field normals_weight of
  * luxfer_stylize_report. In a sequence, the first frame decides. To overrule this, add the normals with a weight of
  * your own by LUXFER_GUIDES_WITH_NORMALS or luxfer_stylize_add_guide; with weight 0 they are not used.
- * LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
- * range.
+ * LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if extras has unknown flags
+ * or extra_weight is out of range.
  */
 luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
                                         luxfer_guides *source,

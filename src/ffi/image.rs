@@ -63,7 +63,7 @@ pub struct luxfer_image_view {
     pub width: u32,
     /// Height in pixels, in [1, 65536]; default 0: the caller must set it.
     pub height: u32,
-    /// LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error.
+    /// LUXFER_VIEW_ flags, or 0, the default. Unknown flags give LUXFER_INVALID_ARGUMENT.
     pub flags: u32,
     /// Must be 0.
     pub reserved: u32,

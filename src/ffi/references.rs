@@ -2,6 +2,8 @@
 //!
 //! Handles of every kind are reference counted: a create function returns one reference, luxfer_retain adds one,
 //! luxfer_release removes one, and removing the last reference frees the object. Objects may be released in any order.
+//! An object that is given an image, a scene or another object as an input holds a reference of its own, so the caller
+//! may release the input at once.
 
 use super::guard::guard;
 use super::kinds::Kind;

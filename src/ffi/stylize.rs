@@ -37,8 +37,8 @@ pub type luxfer_guide_range = i32;
 /// Linear light >= 0, such as a rendering. Its values are clipped at white (1) and compared in the sRGB encoding. If
 /// the 99.9th percentile of source and target together exceeds 1, all values are divided by this percentile first.
 pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
-/// Data, such as normals, object codes and edges. The range of values that source and target have together is scaled
-/// to [0, 1].
+/// Data, such as normals, object codes and edges. The range of values that all channels of source and target have
+/// together is scaled to [0, 1].
 pub const LUXFER_GUIDE_DATA: luxfer_guide_range = 1;
 
 /// Flag of luxfer_stylize_add_guides: add the normals. Without this flag, the normals are used only if the strokes of
@@ -212,8 +212,8 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
 /// normals guide the picture too, so that its strokes follow the shapes of the target; see the field normals_weight of
 /// luxfer_stylize_report. In a sequence, the first frame decides. To overrule this, add the normals with a weight of
 /// your own by LUXFER_GUIDES_WITH_NORMALS or luxfer_stylize_add_guide; with weight 0 they are not used.
-/// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
-/// range.
+/// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if extras has unknown flags
+/// or extra_weight is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guides(
     stylize: *mut luxfer_stylize,

@@ -46,9 +46,9 @@ pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 /// meet, each stays whole up to the seam.
 pub const LUXFER_STYLIZE_VOTE_MAJORITY: luxfer_stylize_vote = 3;
 /// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MAJORITY. The proportion varies, so that each place of
-/// the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
-/// pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
-/// luxfer_stylize_report.unblended_share is the share of whole pixels.
+/// the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus copies
+/// pixels of the artwork unchanged in rough paint, has soft transitions in smooth paint, and has edges as sharp as in
+/// the artwork. luxfer_stylize_report.unblended_share is the share of unchanged pixels.
 pub const LUXFER_STYLIZE_VOTE_ADAPTIVE: luxfer_stylize_vote = 4;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_get_preset. The defaults

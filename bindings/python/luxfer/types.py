@@ -312,7 +312,7 @@ class FocalSource(IntEnum):
     """The source of a focal length."""
 
     GIVEN = 0
-    """Set by the caller."""
+    """The caller has set the focal length."""
     FROM_VANISHING_POINTS = 1
     """Estimated, mainly from the vanishing points of orthogonal directions."""
     ASSUMED = 2
@@ -850,9 +850,9 @@ class StylizeVote(IntEnum):
     the artwork meet, each stays whole up to the seam."""
     ADAPTIVE = 4
     """A blend of StylizeVote.PLAIN and StylizeVote.MAJORITY. The proportion varies, so that each place of the
-    picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has
-    whole pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
-    StylizeReport.unblended_share is the share of whole pixels."""
+    picture has as much fine detail as the place of the artwork from which it was painted. The blend thus copies
+    pixels of the artwork unchanged in rough paint, has soft transitions in smooth paint, and has edges as sharp
+    as in the artwork. StylizeReport.unblended_share is the share of unchanged pixels."""
 
 
 class StylizePreset(IntEnum):
@@ -876,8 +876,8 @@ class GuideRange(IntEnum):
     encoding. If the 99.9th percentile of source and target together exceeds 1, all values are divided by this
     percentile first."""
     DATA = 1
-    """Data, such as normals, object codes and edges. The range of values that source and target have together
-    is scaled to [0, 1]."""
+    """Data, such as normals, object codes and edges. The range of values that all channels of source and target
+    have together is scaled to [0, 1]."""
 
 
 class StylizeImage(IntEnum):
@@ -1066,7 +1066,7 @@ class ImageView(TypedDict, total=False):
     height: int
     """Height in pixels, in [1, 65536]; default 0: the caller must set it."""
     flags: View | str | int
-    """View, or 0, the default. Unknown flags are an error."""
+    """View, or 0, the default. Unknown flags give Status.INVALID_ARGUMENT."""
     pixel_stride: int
     """Bytes from one pixel to the next, at least the size of a pixel; 0, the default: pixels are packed."""
     row_stride: int
@@ -1605,8 +1605,9 @@ class RectifyParams(TypedDict, total=False):
     distortion: float
     """Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
     distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN,
-    the default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least
-    two standard deviations, and the lines then meet better in vanishing points. 0: no distortion is undone."""
+    the default: the distortion is measured. It is undone if it lies between -0.1 and -0.02, if its absolute
+    value is at least two standard deviations, and if the lines meet better in vanishing points without it. 0:
+    no distortion is undone."""
 
 
 @dataclass(frozen=True)
@@ -2481,7 +2482,7 @@ class Preset:
     uniformity: float
     """Minimum uniformity U0 (minimum / mean illuminance) of the task area."""
     rendering: float
-    """Minimum colour rendering index."""
+    """Minimum general colour rendering index Ra."""
     walls: float
     """Minimum mean illuminance of the walls, in lux; 0 if there is no requirement."""
     ceiling: float
