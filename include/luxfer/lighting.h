@@ -239,7 +239,8 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 #define LUXFER_GROUP_BY_Z 4
 
 /**
- * Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms one group,
+ * Lamps of about equal area form a group: in the order of their areas, a new group begins where the area grows by more
+ * than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot, directional) forms one group,
  * and luminaires with the same distribution form one group for each distribution.
  */
 #define LUXFER_GROUP_BY_TYPE 5
@@ -369,7 +370,7 @@ typedef struct luxfer_lamp {
 typedef struct luxfer_lamps_goal {
     /** sizeof(luxfer_lamps_goal), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** LUXFER_OUTCOME_ value of each channel. */
+    /** Whether each channel meets its target: a LUXFER_OUTCOME_ value. */
     luxfer_outcome outcome[3];
     /**
      * Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is the
@@ -1195,7 +1196,7 @@ typedef struct luxfer_pendants_params {
     double suspension_error;
     /**
      * Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
-     * a rectification. Photo and masks must then be free of lens distortion.
+     * a rectification. Without a rectification, the photo and the mask must be free of lens distortion.
      */
     double focal;
     /**
@@ -1334,9 +1335,10 @@ typedef struct luxfer_pendant {
  * most one point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of
  * lamps, even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for
  * a lamp, and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
- * LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not that
- * of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has succeeded;
- * LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting is out of range.
+ * LUXFER_DEGENERATE if the mask is empty, a lamp is too small, the photo's border cuts off more than 30 % of its
+ * outline, or its outline is not that of a body of revolution: the message says what to paint. LUXFER_NOT_READY before
+ * the job of view has succeeded; LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting
+ * is out of range.
  */
 luxfer_status luxfer_pendants_find(luxfer_context *context,
                                    luxfer_image *photo,

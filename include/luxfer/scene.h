@@ -1078,8 +1078,8 @@ typedef struct luxfer_candidate {
     const char *name;
     /**
      * The reason for the score: an English sentence that states area, level_area and height, and in percent the
-     * factors min(1, level_area / F) and h of the formula of the score, in zero-terminated UTF-8. The string lives as
-     * long as the luxfer_candidates.
+     * factors min(1, level_area / F) and h of the formula of the score; or that no triangle is level. It is
+     * zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
      */
     const char *reason;
 } luxfer_candidate;

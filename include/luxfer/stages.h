@@ -911,8 +911,8 @@ typedef struct luxfer_luminaire {
     /** Mean linear RGB colour, where 1 is the photo's white. */
     float colour[3];
     /**
-     * Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the most
-     * lamps. 0 if the border of the texture cuts the lamp.
+     * Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %, are of
+     * one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
      */
     uint32_t kind;
 } luxfer_luminaire;
@@ -1147,7 +1147,7 @@ typedef struct luxfer_relight_report {
     double response[3];
     /** Mean radiance of the target from all other light, in cd/m² per channel. */
     double background[3];
-    /** LUXFER_OUTCOME_ value of each channel. */
+    /** Whether each channel meets its target: a LUXFER_OUTCOME_ value. */
     luxfer_outcome outcome[3];
     /** Reserved; always 0. */
     uint32_t reserved;

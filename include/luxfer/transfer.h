@@ -174,7 +174,7 @@ static inline luxfer_status luxfer_transfer_params_init(luxfer_transfer_params *
 /** No stage of a transfer, but a stylisation or its guides: occurs only in warnings. */
 #define LUXFER_STAGE_STYLIZE -2
 
-/** No stage, but a loaded scene: occurs only in warnings. */
+/** No stage, but a luxfer_scene: occurs only in warnings. */
 #define LUXFER_STAGE_SCENE -1
 
 /** Finds lines, vanishing points and the camera of the photo. */
@@ -728,8 +728,9 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_DIM_LAMPS 22
 
 /**
- * A texture without any light would differ less from the photo than the synthesised texture does; the severity is
- * luxfer_emission_report.error. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
+ * A texture without any light would differ less from the photo than the synthesised texture does. The severity is the
+ * error of this texture; luxfer_emission_report.error is smaller if LUXFER_LAW_BEST has then kept the texture of
+ * another law. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
  */
 #define LUXFER_WARNING_NO_PATTERN 23
 

@@ -63,8 +63,8 @@ pub struct luxfer_candidate {
     /// Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
     pub name: *const c_char,
     /// The reason for the score: an English sentence that states area, level_area and height, and in percent the
-    /// factors min(1, level_area / F) and h of the formula of the score, in zero-terminated UTF-8. The string lives as
-    /// long as the luxfer_candidates.
+    /// factors min(1, level_area / F) and h of the formula of the score; or that no triangle is level. It is
+    /// zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
     pub reason: *const c_char,
 }
 

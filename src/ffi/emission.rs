@@ -248,8 +248,8 @@ pub struct luxfer_luminaire {
     pub flux_share: f64,
     /// Mean linear RGB colour, where 1 is the photo's white.
     pub colour: [f32; 3],
-    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the most
-    /// lamps. 0 if the border of the texture cuts the lamp.
+    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %, are of
+    /// one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
     pub kind: u32,
 }
 

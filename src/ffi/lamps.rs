@@ -44,7 +44,8 @@ pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
 /// Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the emission has a
 /// texture, all lamps form one group.
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
-/// Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms one group,
+/// Lamps of about equal area form a group: in the order of their areas, a new group begins where the area grows by more
+/// than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot, directional) forms one group,
 /// and luminaires with the same distribution form one group for each distribution.
 pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 

@@ -68,7 +68,7 @@ versioned!(luxfer_lamp, [80], {
 pub struct luxfer_lamps_goal {
     /// sizeof(luxfer_lamps_goal), set by the function that fills the struct.
     pub struct_size: u32,
-    /// LUXFER_OUTCOME_ value of each channel.
+    /// Whether each channel meets its target: a LUXFER_OUTCOME_ value.
     pub outcome: [luxfer_outcome; 3],
     /// Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is the
     /// wanted illuminance divided by pi.

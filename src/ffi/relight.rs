@@ -139,7 +139,7 @@ pub struct luxfer_relight_report {
     pub response: [f64; 3],
     /// Mean radiance of the target from all other light, in cd/m² per channel.
     pub background: [f64; 3],
-    /// LUXFER_OUTCOME_ value of each channel.
+    /// Whether each channel meets its target: a LUXFER_OUTCOME_ value.
     pub outcome: [luxfer_outcome; 3],
     /// Reserved; always 0.
     pub reserved: u32,

@@ -47,7 +47,7 @@ pub struct luxfer_transfer {
 pub type luxfer_stage = i32;
 /// No stage of a transfer, but a stylisation or its guides: occurs only in warnings.
 pub const LUXFER_STAGE_STYLIZE: luxfer_stage = -2;
-/// No stage, but a loaded scene: occurs only in warnings.
+/// No stage, but a luxfer_scene: occurs only in warnings.
 pub const LUXFER_STAGE_SCENE: luxfer_stage = -1;
 /// Finds lines, vanishing points and the camera of the photo.
 pub const LUXFER_STAGE_VIEW: luxfer_stage = 0;

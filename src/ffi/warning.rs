@@ -96,8 +96,9 @@ pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 /// that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit. The warning points
 /// to the darkest lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
-/// A texture without any light would differ less from the photo than the synthesised texture does; the severity is
-/// luxfer_emission_report.error. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
+/// A texture without any light would differ less from the photo than the synthesised texture does. The severity is the
+/// error of this texture; luxfer_emission_report.error is smaller if LUXFER_LAW_BEST has then kept the texture of
+/// another law. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or both; for
 /// the lights, positive strokes. The severity is the expected share of wrong pixels.

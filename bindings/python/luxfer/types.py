@@ -521,7 +521,7 @@ class Stage(IntEnum):
     STYLIZE = -2
     """No stage of a transfer, but a stylisation or its guides: occurs only in warnings."""
     SCENE = -1
-    """No stage, but a loaded scene: occurs only in warnings."""
+    """No stage, but a luxfer_scene: occurs only in warnings."""
     VIEW = 0
     """Finds lines, vanishing points and the camera of the photo."""
     FEATURES = 1
@@ -662,8 +662,9 @@ class WarningCode(IntEnum):
     probability that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit.
     The warning points to the darkest lamp."""
     NO_PATTERN = 23
-    """A texture without any light would differ less from the photo than the synthesised texture does; the
-    severity is EmissionReport.error. This warning replaces WarningCode.PATTERN_UNCERTAIN."""
+    """A texture without any light would differ less from the photo than the synthesised texture does. The
+    severity is the error of this texture; EmissionReport.error is smaller if EmissionLaw.BEST has then kept the
+    texture of another law. This warning replaces WarningCode.PATTERN_UNCERTAIN."""
     PROPOSED = 24
     """A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or
     both; for the lights, positive strokes. The severity is the expected share of wrong pixels."""
@@ -728,8 +729,10 @@ class Group(IntEnum):
     """Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the
     emission has a texture, all lamps form one group."""
     BY_TYPE = 5
-    """Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms
-    one group, and luminaires with the same distribution form one group for each distribution."""
+    """Lamps of about equal area form a group: in the order of their areas, a new group begins where the area
+    grows by more than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot,
+    directional) forms one group, and luminaires with the same distribution form one group for each
+    distribution."""
 
 
 class Aim(IntEnum):
@@ -1512,8 +1515,8 @@ class Candidate:
     luxfer_candidates."""
     reason: str
     """The reason for the score: an English sentence that states area, level_area and height, and in percent the
-    factors min(1, level_area / F) and h of the formula of the score, in zero-terminated UTF-8. The string lives
-    as long as the luxfer_candidates."""
+    factors min(1, level_area / F) and h of the formula of the score; or that no triangle is level. It is zero-
+    terminated UTF-8. The string lives as long as the luxfer_candidates."""
 
 
 class RenderParams(TypedDict, total=False):
@@ -1872,8 +1875,8 @@ class Luminaire:
     colour: tuple[float, float, float]
     """Mean linear RGB colour, where 1 is the photo's white."""
     kind: int
-    """Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the
-    most lamps. 0 if the border of the texture cuts the lamp."""
+    """Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %,
+    are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp."""
 
 
 class RelightParams(TypedDict, total=False):
@@ -1909,7 +1912,7 @@ class RelightReport:
     background: tuple[float, float, float]
     """Mean radiance of the target from all other light, in cd/m² per channel."""
     outcome: tuple[Outcome, Outcome, Outcome]
-    """Outcome of each channel."""
+    """Whether each channel meets its target: Outcome."""
     error: float
     """The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without
     such channels."""
@@ -2201,7 +2204,7 @@ class LampsGoal:
     """The light that the surface or grid of one goal receives with the powers found."""
 
     outcome: tuple[Outcome, Outcome, Outcome]
-    """Outcome of each channel."""
+    """Whether each channel meets its target: Outcome."""
     target: tuple[float, float, float]
     """Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is
     the wanted illuminance divided by pi."""
@@ -2518,7 +2521,8 @@ class PendantsParams(TypedDict, total=False):
     luxfer_pendants_find, in [0.05, 100]; default 1."""
     focal: float
     """Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not
-    used with a rectification. Photo and masks must then be free of lens distortion."""
+    used with a rectification. Without a rectification, the photo and the mask must be free of lens
+    distortion."""
     focal_error: float
     """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0
     stands for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller.
