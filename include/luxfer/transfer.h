@@ -614,7 +614,7 @@ typedef struct luxfer_warning {
 
 /**
  * The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the relative
- * standard deviation of the focal length.
+ * standard deviation of the focal length, or the limit if the limit is larger.
  */
 #define LUXFER_WARNING_FOCAL_ASSUMED 1
 

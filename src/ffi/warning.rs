@@ -34,7 +34,7 @@ pub struct luxfer_warnings {
 /// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added.
 pub type luxfer_warning_code = i32;
 /// The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the relative
-/// standard deviation of the focal length.
+/// standard deviation of the focal length, or the limit if the limit is larger.
 pub const LUXFER_WARNING_FOCAL_ASSUMED: luxfer_warning_code = 1;
 /// The directions of the room axes are uncertain; the severity is the largest standard deviation in radians.
 pub const LUXFER_WARNING_VIEW_UNCERTAIN: luxfer_warning_code = 2;

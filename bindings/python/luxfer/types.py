@@ -597,7 +597,7 @@ class WarningCode(IntEnum):
 
     FOCAL_ASSUMED = 1
     """The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the
-    relative standard deviation of the focal length."""
+    relative standard deviation of the focal length, or the limit if the limit is larger."""
     VIEW_UNCERTAIN = 2
     """The directions of the room axes are uncertain; the severity is the largest standard deviation in
     radians."""
