@@ -63,7 +63,10 @@ const char *luxfer_get_version_string(void);
  *
  * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added.
  * A function writes its outputs only if it returns LUXFER_OK. luxfer_context_get_last_error describes a failure in
- * words.
+ * words. The comment of a function lists its errors. Some errors hold for every function, even if its comment does not
+ * name them: LUXFER_INVALID_ARGUMENT for a NULL pointer unless the comment allows NULL, and for an argument that is
+ * none of the constants of its type; LUXFER_OUT_OF_MEMORY if the memory budget of the context, or the machine, is used
+ * up.
  * ================================================================================================================== */
 
 /** The result of a call: LUXFER_OK, or the reason for the failure. */
@@ -325,6 +328,8 @@ luxfer_status luxfer_context_get_last_error(luxfer_context *context,
  *
  * Handles of every kind are reference counted: a create function returns one reference, luxfer_retain adds one,
  * luxfer_release removes one, and removing the last reference frees the object. Objects may be released in any order.
+ * An object that is given an image, a scene or another object as an input holds a reference of its own, so the caller
+ * may release the input at once.
  * ================================================================================================================== */
 
 /**
@@ -336,10 +341,10 @@ luxfer_status luxfer_retain(void *handle);
 /**
  * Removes a reference to an object of any kind; NULL does nothing. Any thread.
  *
- * An object may outlive the caller's references: a context lives as long as the objects created in it, and a stage as
- * long as its job, which continues. Two kinds of release take time. Releasing the last reference to a job cancels the
- * job and waits until it has ended. Releasing the last reference to a context and all objects created in it waits
- * until the worker threads have ended.
+ * An object may outlive the caller's references to it: a context lives until its last object is freed, and a stage
+ * with a running job lives until the job has ended. Two kinds of release take time. Releasing the last reference to a
+ * job cancels the job and waits until it has ended. The release that frees a context waits until the context's worker
+ * threads have ended.
  * LUXFER_INVALID_ARGUMENT if handle is not a live object; the failure leaves no message.
  */
 luxfer_status luxfer_release(void *handle);
@@ -348,7 +353,8 @@ luxfer_status luxfer_release(void *handle);
  * Image
  *
  * An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. It has up to 64
- * channels; width and height are at most 65536 pixels. Rows run from top to bottom. An image never changes after its
+ * channels; width and height are at most 65536 pixels. Rows run from top to bottom. Points of an image are in pixels,
+ * x to the right and y down; the centre of the top-left pixel is (0.5, 0.5). An image never changes after its
  * creation, so results are shared and not copied. A view describes pixels in the caller's memory; the library never
  * keeps a pointer to them.
  * ================================================================================================================== */
@@ -374,15 +380,15 @@ typedef struct luxfer_image_view {
     uint32_t struct_size;
     /** Samples per pixel in [1, 4]; default 3. */
     uint32_t channels;
-    /** LUXFER_SAMPLE_ value; default LUXFER_SAMPLE_F32. */
+    /** Storage type of the samples: a LUXFER_SAMPLE_ value; default LUXFER_SAMPLE_F32. */
     luxfer_sample sample;
-    /** LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR. */
+    /** Encoding of the samples: a LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR. */
     luxfer_colour_space colour_space;
     /** Width in pixels, in [1, 65536]; default 0: the caller must set it. */
     uint32_t width;
     /** Height in pixels, in [1, 65536]; default 0: the caller must set it. */
     uint32_t height;
-    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error. */
+    /** LUXFER_VIEW_ flags, or 0, the default. Unknown flags give LUXFER_INVALID_ARGUMENT. */
     uint32_t flags;
     /** Must be 0. */
     uint32_t reserved;
@@ -472,8 +478,9 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
 
 /**
  * Saves an image to a file; path is UTF-8, and its extension chooses the format. Any thread.
- * - .png: 1, 3 or 4 channels. The values are multiplied by exposure (> 0, finite; 1 shows the value 1 as white),
- *   clamped to [0, 1] and encoded as 8-bit sRGB, which the file states.
+ * - .png: 1, 3 or 4 channels. The colours are multiplied by exposure (> 0, finite; 1 shows the value 1 as white),
+ *   clamped to [0, 1] and encoded as 8-bit sRGB, which the file states. The fourth channel is alpha; it is only
+ *   clamped.
  * - .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709. exposure is not
  *   used.
  *
@@ -498,8 +505,9 @@ luxfer_status luxfer_image_get_size(luxfer_image *image,
 
 /**
  * Copies an image into the caller's pixels. The view must have the image's width and height. It receives
- * view->channels channels of the image, starting at first_channel; with LUXFER_COLOUR_SRGB, the library encodes them
- * with the sRGB curve. For integer samples, values are clamped to [0, 1] and rounded, and NaN becomes 0. Any thread.
+ * view->channels channels of the image, starting at first_channel, counted from 0; with LUXFER_COLOUR_SRGB, the
+ * library encodes them with the sRGB curve. For integer samples, values are clamped to [0, 1] and rounded, and NaN
+ * becomes 0. Any thread.
  * LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
  */
 luxfer_status luxfer_image_read(luxfer_image *image,
@@ -529,7 +537,7 @@ typedef struct luxfer_photo_metadata {
     /**
      * EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied it: 2
      * mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90 degrees, 8
-     * counter-clockwise, 5 and 7 rotate by 90 degrees and mirror.
+     * counter-clockwise, 5 mirrors about the diagonal from top left to bottom right, 7 about the other diagonal.
      */
     uint32_t orientation;
     /**
@@ -629,14 +637,14 @@ typedef struct luxfer_merge_params {
     /** Index of the reference; -1, the default: the photo with the most pixels that are well exposed. */
     int32_t reference;
     /**
-     * 0, the default: where exposures disagree beyond noise, because something moved, only the exposures are used that
-     * agree with the reference, or, where the reference is clipped, with the next shorter exposure that is not
-     * clipped; 1: all exposures are averaged.
+     * What happens where exposures disagree beyond noise, because something moved. 0, the default: only those
+     * exposures are averaged that agree with the reference or, where the reference is clipped, with the next shorter
+     * exposure that is not clipped. 1: all exposures are averaged.
      */
     uint32_t keep_moving;
     /**
-     * Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
-     * default 0.03. 0: the photos are not aligned, as for a camera on a tripod.
+     * Largest shift between photos that are neighbours in exposure, as a part of the longer side of a photo, in [0,
+     * 0.25]; default 0.03. 0: the photos are not aligned, as for a camera on a tripod.
      */
     double max_shift;
     /**
@@ -676,21 +684,30 @@ typedef struct luxfer_merge_report {
     double clipped;
     /** Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is 1. */
     double moved;
-    /** Exposure of each photo relative to the reference. */
+    /**
+     * Exposure of each photo divided by the exposure of the reference: a ratio of amounts of light, not of stops;
+     * above 1 for a photo with more light, 1 for the reference.
+     */
     double exposures[16];
-    /** Relative standard error of each exposure; 0 if params->exposures states it. */
+    /** Relative standard error of each exposure; 0 for exposures that luxfer_merge_params.exposures states. */
     double errors[16];
-    /** Exposure of each photo relative to the reference according to the metadata; 0 = unknown. */
+    /** Exposure of each photo divided by the exposure of the reference, as the metadata state it; 0 = unknown. */
     double stated[16];
-    /** Column of each photo that shows the part of the view that column 0 of the reference shows. */
+    /**
+     * Column of each photo that shows the part of the view that column 0 of the reference shows; below 0 if the photo
+     * does not show that part.
+     */
     int32_t shift_x[16];
-    /** Row of each photo that shows the part of the view that row 0 of the reference shows. */
+    /**
+     * Row of each photo that shows the part of the view that row 0 of the reference shows; below 0 if the photo does
+     * not show that part.
+     */
     int32_t shift_y[16];
 } luxfer_merge_report;
 
 /**
- * From the metadata and the pixels, weighted by their errors; from one of them where the other is missing. It is an
- * error if they contradict each other by more than a third of a stop.
+ * From the metadata and the pixels, weighted by their errors; from one of them where the other is missing. If they
+ * contradict each other by more than a third of a stop, luxfer_image_merge_exposures returns LUXFER_INVALID_ARGUMENT.
  */
 #define LUXFER_EXPOSURE_SOURCE_BOTH 0
 
@@ -708,7 +725,8 @@ typedef struct luxfer_merge_report {
  * caller releases *image. Any thread.
  *
  * The estimate of a pixel is the sum of its values divided by the sum of their exposures, which has the least noise
- * that photons allow. Exposures fade out towards clipping. A single photo is returned as it is.
+ * that photons allow. The weight of a value falls from 1 at 80 % of the clipping value to 0 at the clipping value. A
+ * single photo is returned as it is.
  * LUXFER_INVALID_ARGUMENT if a setting or a photo is not as stated, if samples are NaN or infinite, or if metadata and
  * pixels contradict each other (the message states both); LUXFER_DEGENERATE if exposures are unknown and cannot be
  * measured, because too few pixels are well exposed in two neighbours; LUXFER_OUT_OF_MEMORY beyond the memory budget.
@@ -732,10 +750,10 @@ luxfer_status luxfer_image_merge_exposures(luxfer_context *context,
 /** Quantity that a depth map measures: a LUXFER_DEPTH_ value. */
 typedef int32_t luxfer_depth_kind;
 
-/** Distance along the viewing axis. */
+/** Distance from the camera along the viewing axis (depth z). */
 #define LUXFER_DEPTH_ALONG_Z 0
 
-/** Distance along the ray of each pixel. */
+/** Distance from the camera along the ray of each pixel. */
 #define LUXFER_DEPTH_ALONG_RAY 1
 
 /* ==================================================================================================================
@@ -776,6 +794,7 @@ luxfer_status luxfer_strokes_create(luxfer_context *context,
  * for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
  * floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. A
  * pixel that several strokes cover belongs to the last one. Any thread.
+ * LUXFER_INVALID_ARGUMENT if there is no point, a coordinate is not finite, or radius or positive is out of range.
  */
 luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,
                                  luxfer_phase phase,
@@ -786,8 +805,9 @@ luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,
 
 /**
  * Adds the strokes of a drawing, an image of the size given to luxfer_strokes_create. Green (0, 255, 0) is plane, red
- * (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent pixels
- * are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
+ * (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and pixels with an
+ * alpha below 0.5 are ignored. Each sRGB channel of a pixel may differ from the colour by 30 % of its range. Connected
+ * regions of one colour with fewer than 4 pixels are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
  * LUXFER_INVALID_ARGUMENT if the size differs or the drawing has fewer than 3 channels.
  */
 luxfer_status luxfer_strokes_add_image(luxfer_strokes *strokes,
@@ -808,9 +828,10 @@ luxfer_status luxfer_strokes_add_text(luxfer_strokes *strokes,
  *
  * Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
  * runs on threads of the library. The job works on the inputs as they are at its start: changing or releasing them
- * later does not affect the job. While a job runs, its object refuses changes and further jobs
- * (LUXFER_INVALID_OPERATION). Read the results from the object after the job has succeeded. Releasing the last
- * reference to a running job cancels the job and waits until it has ended.
+ * later does not affect the job. A function that sets an input makes only the checks that its comment names. The job
+ * checks whether all inputs are valid and fit together, and otherwise ends with LUXFER_INVALID_ARGUMENT. While a job
+ * runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after
+ * the job has succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
  *
  * Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
  * waiting job at once. Only two calls wait for a job: luxfer_job_wait, and luxfer_release of the last reference to a

@@ -95,7 +95,7 @@ luxfer_status luxfer_render_add_part(luxfer_render *render,
                                      const char *path);
 
 /**
- * Removes all files to merge. Any thread.
+ * Empties the list of files to merge, which luxfer_render_add_part fills. The files stay on the disk. Any thread.
  * LUXFER_INVALID_OPERATION while a job runs.
  */
 luxfer_status luxfer_render_clear_parts(luxfer_render *render);

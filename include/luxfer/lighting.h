@@ -182,8 +182,9 @@ typedef struct luxfer_lamps_params {
     /** Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity. */
     double max_scale;
     /**
-     * Weight of the regularisation, which pulls all powers towards one value, in [1e-9, 1e3]; default 1e-6. With a
-     * small weight the goals are met, with a large weight the powers are nearly equal.
+     * Weight of the regularisation, which pulls all powers towards the equal power that meets the goals best, in
+     * [1e-9, 1e3]; default 1e-6. With a small weight the goals are met, with a large weight the powers are nearly
+     * equal.
      */
     double regularisation;
     /**
@@ -238,7 +239,8 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 #define LUXFER_GROUP_BY_Z 4
 
 /**
- * Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms one group,
+ * Lamps of about equal area form a group: in the order of their areas, a new group begins where the area grows by more
+ * than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot, directional) forms one group,
  * and luminaires with the same distribution form one group for each distribution.
  */
 #define LUXFER_GROUP_BY_TYPE 5
@@ -279,7 +281,8 @@ luxfer_status luxfer_lamps_start(luxfer_lamps *lamps,
 /**
  * Adds a goal: rgb is the mean radiance that a mesh should have, in cd/m² per channel, each in [0, 1e15]. quantity is
  * a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other goals. Any thread.
- * LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ * LUXFER_NOT_FOUND if the scene has no such mesh; LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene;
+ * LUXFER_INVALID_ARGUMENT if rgb or weight is out of range.
  */
 luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
                                     uint32_t mesh,
@@ -290,7 +293,8 @@ luxfer_status luxfer_lamps_add_mesh(luxfer_lamps *lamps,
 /**
  * Adds a goal: the mean illuminance in lux that a calculation grid should have, from light of any colour. grid may be
  * NULL for its default. weight, in [0, 1e12], is the weight of this goal relative to the other goals. Any thread.
- * LUXFER_INVALID_ARGUMENT if lux is not in [0, 1e15], LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+ * LUXFER_INVALID_ARGUMENT if lux is not in [0, 1e15] or weight is out of range; LUXFER_INVALID_OPERATION before
+ * luxfer_lamps_set_scene.
  */
 luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
                                     const luxfer_illuminance_grid *grid,
@@ -301,7 +305,7 @@ luxfer_status luxfer_lamps_add_grid(luxfer_lamps *lamps,
  * Makes a goal a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green, blue.
  * For a goal in lux, the three values must be equal. The parameter goal is the number of the goal: goals are numbered
  * from 0 in the order in which they were added. Without this call a goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
- * LUXFER_NOT_FOUND if there is no such goal.
+ * LUXFER_NOT_FOUND if there is no such goal; LUXFER_INVALID_ARGUMENT if the values for a goal in lux differ.
  */
 luxfer_status luxfer_lamps_set_constraint(luxfer_lamps *lamps,
                                           uint32_t goal,
@@ -366,7 +370,7 @@ typedef struct luxfer_lamp {
 typedef struct luxfer_lamps_goal {
     /** sizeof(luxfer_lamps_goal), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** LUXFER_OUTCOME_ value of each channel. */
+    /** Whether each channel meets its target: a LUXFER_OUTCOME_ value. */
     luxfer_outcome outcome[3];
     /**
      * Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is the
@@ -403,7 +407,7 @@ typedef struct luxfer_lamps_response {
     uint32_t reserved;
     /** Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel. */
     double mean[3];
-    /** Half-widths of the 95 % confidence intervals of `mean`, per channel, in cd/m². */
+    /** Half-widths of the 95 % confidence intervals of the field mean, per channel, in cd/m². */
     double half_width[3];
 } luxfer_lamps_response;
 
@@ -443,9 +447,9 @@ luxfer_status luxfer_lamps_get_response(luxfer_lamps *lamps,
                                         size_t size);
 
 /**
- * Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes including
- * the zero. The text is empty if all goals of positive weight are met. *needed, unless NULL, receives the capacity
- * that the whole text needs. Any thread.
+ * Copies the reason why goals are not met, in English, into buffer as zero-terminated UTF-8, truncated to capacity
+ * bytes including the zero. buffer may be NULL if capacity is 0. The text is empty if all goals of positive weight are
+ * met. *needed, unless NULL, receives the capacity that the whole text needs. Any thread.
  * LUXFER_NOT_READY before a job has succeeded.
  */
 luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
@@ -454,8 +458,9 @@ luxfer_status luxfer_lamps_get_reason(luxfer_lamps *lamps,
                                       size_t *needed);
 
 /**
- * Gets the emission texture of the solution, in which every lamp is multiplied by its factor luxfer_lamp.scale;
- * linear RGB. The caller releases *texture. Any thread.
+ * Gets the emission texture of the solution: the texture of the material, in which every lamp is multiplied by its
+ * factor luxfer_lamp.scale; linear RGB, in the unit of the old texture. Texels outside the lamps are unchanged. The
+ * caller releases *texture. Any thread.
  * LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
  */
 luxfer_status luxfer_lamps_get_texture(luxfer_lamps *lamps,
@@ -566,11 +571,13 @@ luxfer_status luxfer_importance_respond(luxfer_importance *importance,
                                         size_t size);
 
 /**
- * Solves for the factor by which to multiply a texture so that the mean radiance of the target becomes rgb in cd/m²,
- * each channel in [0, 1e15]. This call uses the map; luxfer_relight solves the same problem by tracing new paths.
- * texture and placement are as for luxfer_importance_respond. size is sizeof *report. Any thread.
- * LUXFER_NOT_READY before a job has succeeded, LUXFER_UNREACHABLE if no light from the texture reaches the target, or
- * the other lights alone exceed rgb.
+ * Solves for the factor, per channel, by which to multiply a texture so that the mean radiance of the target becomes
+ * rgb in cd/m², each channel in [0, 1e15]. *report receives the solution, with an outcome for each channel. This call
+ * uses the map; luxfer_relight solves the same problem by tracing new paths. texture and placement are as for
+ * luxfer_importance_respond. size is sizeof *report. Any thread.
+ * LUXFER_NOT_READY before a job has succeeded; LUXFER_UNREACHABLE if no channel has a solution: no light of the
+ * channel reaches the target from the texture, or the other lights alone exceed rgb; LUXFER_INVALID_ARGUMENT if
+ * placement is not finite or rgb is out of range.
  */
 luxfer_status luxfer_importance_solve(luxfer_importance *importance,
                                       luxfer_image *texture,
@@ -648,7 +655,7 @@ typedef struct luxfer_placement {
     double offset[2];
     /** Number of repetitions of the texture along u and v of the surface. */
     double scale[2];
-    /** Rotation of the placement in radians. */
+    /** Rotation of the placement in radians, from u towards v. */
     double rotation;
     /** Mean radiance of the target from the texture alone, in cd/m² per channel. */
     double response[3];
@@ -733,8 +740,8 @@ typedef struct luxfer_glare_report {
 
 /**
  * Gets the correlated colour temperature of rgb, a linear colour. *kelvin receives the temperature of the nearest
- * blackbody, in [1000, 20000]; *duv receives the distance from this blackbody in the CIE 1960 diagram, positive for
- * greenish colours. Any thread.
+ * blackbody, in [1000, 20000]; *duv receives the signed distance from this blackbody in the CIE 1960 diagram, positive
+ * for greenish and negative for pinkish colours. Any thread.
  * LUXFER_DEGENERATE if the colour is black or not finite.
  */
 luxfer_status luxfer_colour_to_temperature(luxfer_context *context,
@@ -744,8 +751,8 @@ luxfer_status luxfer_colour_to_temperature(luxfer_context *context,
 
 /**
  * Computes the linear colour, with luminance 1, of a colour temperature; rgb receives the colour. kelvin is in [1000,
- * 20000]; duv, the distance from the blackbody in the CIE 1960 diagram, is in [-0.05, 0.05]. A channel is negative if
- * the colour is out of gamut. Any thread.
+ * 20000]. duv, in [-0.05, 0.05], is the signed distance from the blackbody locus in the CIE 1960 diagram, positive
+ * towards green. A channel of rgb is negative if the colour is out of gamut. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_temperature_to_colour(luxfer_context *context,
@@ -946,7 +953,7 @@ typedef int32_t luxfer_unit;
 typedef struct luxfer_false_colour_params {
     /** sizeof(luxfer_false_colour_params), set by luxfer_false_colour_params_init. */
     uint32_t struct_size;
-    /** LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR. */
+    /** Scale that maps values to colours: a LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR. */
     luxfer_scale scale;
     /**
      * Quantity of the values, whose unit is written above the bar: a LUXFER_UNIT_ value; default
@@ -1057,7 +1064,7 @@ typedef struct luxfer_preset {
     double glare;
     /** Minimum uniformity U0 (minimum / mean illuminance) of the task area. */
     double uniformity;
-    /** Minimum colour rendering index. */
+    /** Minimum general colour rendering index Ra. */
     double rendering;
     /** Minimum mean illuminance of the walls, in lux; 0 if there is no requirement. */
     double walls;
@@ -1182,17 +1189,20 @@ typedef struct luxfer_pendants_params {
      * the height is unknown, the unit of all lengths, known_length included, is the true height instead of the metre.
      */
     double ceiling;
-    /** Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1. */
+    /**
+     * Standard deviation in pixels of the x and of the y of each point in the array suspensions of
+     * luxfer_pendants_find, in [0.05, 100]; default 1.
+     */
     double suspension_error;
     /**
      * Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
-     * a rectification. Photo and masks must then be free of lens distortion.
+     * a rectification. Without a rectification, the photo and the mask must be free of lens distortion.
      */
     double focal;
     /**
      * Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
-     * for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It is 0 only
-     * if the rectification was given the focal length.
+     * for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. This estimate
+     * is 0 only if the caller gave the rectification the focal length.
      */
     double focal_error;
     /**
@@ -1325,9 +1335,10 @@ typedef struct luxfer_pendant {
  * most one point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of
  * lamps, even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for
  * a lamp, and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
- * LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not that
- * of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has succeeded;
- * LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting is out of range.
+ * LUXFER_DEGENERATE if the mask is empty, a lamp is too small, the photo's border cuts off more than 30 % of its
+ * outline, or its outline is not that of a body of revolution: the message says what to paint. LUXFER_NOT_READY before
+ * the job of view has succeeded; LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting
+ * is out of range.
  */
 luxfer_status luxfer_pendants_find(luxfer_context *context,
                                    luxfer_image *photo,

@@ -156,6 +156,7 @@ luxfer_status luxfer_render_set_scene(luxfer_render *render, luxfer_scene *scene
 /**
  * Sets the camera. camera may be one that luxfer_scene_get_camera has written, or NULL, the default, for the first
  * camera of the scene. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
  */
 luxfer_status luxfer_render_set_camera(luxfer_render *render,
                                        const luxfer_camera_params *camera);
@@ -332,7 +333,7 @@ luxfer_status luxfer_render_set_emitter_as(luxfer_render *render,
 
 /**
  * Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for no AOV. Any thread.
- * LUXFER_INVALID_OPERATION while a job runs.
+ * LUXFER_INVALID_ARGUMENT for unknown flags; LUXFER_INVALID_OPERATION while a job runs.
  */
 luxfer_status luxfer_render_set_aovs(luxfer_render *render, uint32_t flags);
 
@@ -343,9 +344,10 @@ luxfer_status luxfer_render_set_aovs(luxfer_render *render, uint32_t flags);
 luxfer_status luxfer_render_get_layer_count(luxfer_render *render, uint32_t *count);
 
 /**
- * Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes including the zero; index
- * starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
- * LUXFER_NOT_FOUND if there is no such layer.
+ * Copies a layer's name into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero; index
+ * starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity
+ * is 0. Any thread.
+ * LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
  */
 luxfer_status luxfer_render_get_layer_name(luxfer_render *render,
                                            uint32_t index,

@@ -18,8 +18,13 @@ extern "C" {
  *
  * A scene holds meshes, materials, textures, lights and cameras. Coordinates are in metres, right-handed, Y up, in
  * world space. Emission is in cd/m²; punctual lights are in candela and lux, as in glTF 2.0. A job works on the scene
- * as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the
- * scene unchanged.
+ * as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
+ * unchanged.
+ *
+ * Most limits are checked by the calls that set the values, but some depend on several calls. A scene is valid if no
+ * light is above 1e15: no emission times a texel of its emission texture, no luminance of the faces of a luminaire, no
+ * intensity. Calls and jobs that trace a scene which is not valid, export it or list its candidates for the ceiling
+ * end with LUXFER_INVALID_ARGUMENT; the message names the object.
  * ================================================================================================================== */
 
 /** A scene. See luxfer_scene_load and luxfer_scene_create. */
@@ -86,16 +91,19 @@ typedef struct luxfer_surface {
 luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene);
 
 /**
- * Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is
- * replaced only once the new one is complete. Any thread.
- * LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
+ * Saves a scene as a GLB file that contains all textures, as PNG with 8 bits per channel; path is UTF-8 and ends in
+ * .glb. The environment and meshes without triangles are left out. An existing file is replaced only once the new one
+ * is complete. Any thread.
+ * LUXFER_INVALID_ARGUMENT for another ending, or if the scene is not valid; LUXFER_UNSUPPORTED if a texture transform
+ * has shear, or the file would exceed 4 GiB; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_scene_export(luxfer_scene *scene, const char *path);
 
 /**
- * Writes a scene as GLB through write, a function of the caller, which receives the bytes and the pointer user. Any
- * thread.
- * LUXFER_IO if the function returns anything but 0.
+ * Writes a scene as GLB, as luxfer_scene_export does, through write, a function of the caller, which receives the
+ * bytes and the pointer user. Any thread.
+ * LUXFER_IO if the function returns anything but 0; LUXFER_INVALID_ARGUMENT and LUXFER_UNSUPPORTED as for
+ * luxfer_scene_export.
  */
 luxfer_status luxfer_scene_export_memory(luxfer_scene *scene,
                                          luxfer_write_fn write,
@@ -109,9 +117,10 @@ luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
 /**
  * Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
  * the radiance of the environment is rgb in cd/m², each channel in [0, 1e15], from every direction. Otherwise the
- * radiance is an equirectangular image in linear values, multiplied by rgb. The centre of the image is towards -z, its
- * top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn in proportion to
- * the brightness of the image. The image is copied. Any thread.
+ * radiance is an equirectangular image in linear values, multiplied by rgb; of its channels, the first three count, or
+ * the first one as grey if there are fewer than three. A product above 1e15 makes the scene not valid. The centre of
+ * the image is towards -z, its top towards +y, the centre of its right half towards +x. Light samples of the renderer
+ * are drawn in proportion to the brightness of the image. The image is copied. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
@@ -135,8 +144,9 @@ luxfer_status luxfer_scene_find_surface(luxfer_scene *scene,
 /**
  * Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
  * luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material. On the
- * side towards the room, this copy emits texture * rgb in cd/m², each factor in [0, 1e15]. *mesh and *material receive
- * the indices of the new mesh and material; each pointer may be NULL. Any thread.
+ * side towards the room, this copy emits the texture times rgb, in cd/m². The values of the texture are >= 0 and
+ * finite, the channels of rgb are in [0, 1e15]; a product above 1e15 makes the scene not valid. *mesh and *material
+ * receive the indices of the new mesh and material; each pointer may be NULL. Any thread.
  * Errors: as for luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
  * LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
  */
@@ -336,7 +346,10 @@ typedef struct luxfer_texture_use {
 /** Metallic-roughness: the green channel multiplies the roughness, the blue channel multiplies the metallic value. */
 #define LUXFER_TEXTURE_METALLIC_ROUGHNESS 1
 
-/** Normals in tangent space. */
+/**
+ * Normals in tangent space, as in glTF 2.0: a channel value c in [0, 1] stands for 2 c - 1, and green points up in the
+ * image (OpenGL convention). Load the map as data (LUXFER_COLOUR_LINEAR), not as sRGB.
+ */
 #define LUXFER_TEXTURE_NORMAL 2
 
 /** Emission: the texture multiplies the emission; it is looked up without interpolation. */
@@ -382,8 +395,8 @@ luxfer_status luxfer_scene_get_material(luxfer_scene *scene,
  * Adds a texture to a scene: an image in linear values with 1, 3 or 4 channels, of which the fourth is alpha. wrap_u
  * and wrap_v are LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any
  * thread.
- * LUXFER_INVALID_ARGUMENT if the image has 2 channels or a value that is not finite; LUXFER_OUT_OF_MEMORY beyond the
- * memory budget.
+ * LUXFER_INVALID_ARGUMENT if the image has another number of channels or a value that is not finite;
+ * LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
 luxfer_status luxfer_scene_add_texture(luxfer_scene *scene,
                                        luxfer_image *image,
@@ -582,8 +595,8 @@ typedef struct luxfer_distribution_report {
     /** Number of variants of the product in a GLDF container; 1 for all other formats. */
     uint32_t variants;
     /**
-     * Number of light emitters in the file, or in the variant, whose distributions are added up; 1 for IES and
-     * EULUMDAT.
+     * Number of emitters whose distributions were added up: those of the file (TM-33) or of the variant that was read
+     * (GLDF); 1 for IES and EULUMDAT.
      */
     uint32_t emitters;
 } luxfer_distribution_report;
@@ -643,8 +656,9 @@ luxfer_status luxfer_distribution_get_report(luxfer_distribution *distribution,
                                              size_t size);
 
 /**
- * Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes including the zero.
- * *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
+ * Copies the luminaire's name into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero.
+ * *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity is 0. Any
+ * thread.
  */
 luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
                                            char *buffer,
@@ -656,6 +670,7 @@ luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
  * the C plane, which turns around the axis of the luminaire; gamma is the angle from straight down (0) to straight up
  * (180). The intensity is interpolated linearly between the angles of the file, and is 0 for gamma outside them. Any
  * thread.
+ * LUXFER_INVALID_ARGUMENT if an angle is not finite.
  */
 luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
                                                 double c,
@@ -693,7 +708,10 @@ typedef struct luxfer_light_params {
      * 0.
      */
     float inner_angle;
-    /** Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4. */
+    /**
+     * Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4. From inner_angle to
+     * outer_angle, the intensity falls smoothly to 0, as in glTF.
+     */
     float outer_angle;
     /** Must be 0. */
     uint32_t reserved;
@@ -759,7 +777,8 @@ luxfer_status luxfer_scene_add_light(luxfer_scene *scene,
  * distribution. *index, unless NULL, receives its index among the punctual lights. The luminaire shines from the faces
  * of its luminous opening. Faces that do not emit are black: they block light and do not reflect it. If the file of
  * the distribution states no size, or if params selects LUXFER_LUMINAIRE_POINT, the luminaire shines from a point
- * instead, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be NULL for the defaults. Any thread.
+ * instead, and the scene gets the warning LUXFER_WARNING_NOT_IN_PICTURE (luxfer_get_warnings). params may be NULL for
+ * the defaults. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_add_luminaire(luxfer_scene *scene,
@@ -944,19 +963,19 @@ typedef struct luxfer_mesh_info {
 /** An attribute of the vertices of a mesh: a LUXFER_VERTEX_ value. */
 typedef int32_t luxfer_vertex_attribute;
 
-/** Positions, three floats per vertex. */
+/** Positions in metres, three floats per vertex. */
 #define LUXFER_VERTEX_POSITION 0
 
 /** Normals, three floats per vertex. */
 #define LUXFER_VERTEX_NORMAL 1
 
-/** The first set of texture coordinates, two floats per vertex. */
+/** The first set of texture coordinates, two floats per vertex; (0, 0) is the top-left corner of a texture. */
 #define LUXFER_VERTEX_UV_0 2
 
 /** The second set of texture coordinates, two floats per vertex. */
 #define LUXFER_VERTEX_UV_1 3
 
-/** Colours, four floats per vertex. */
+/** Colours: linear red, green, blue and alpha, four floats per vertex. */
 #define LUXFER_VERTEX_COLOUR 4
 
 /**
@@ -970,7 +989,8 @@ luxfer_status luxfer_scene_get_mesh(luxfer_scene *scene,
 
 /**
  * Copies the name of a mesh into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero.
- * *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
+ * *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity is 0. Any
+ * thread.
  * LUXFER_NOT_FOUND if there is no such mesh.
  */
 luxfer_status luxfer_scene_get_mesh_name(luxfer_scene *scene,
@@ -1021,7 +1041,7 @@ typedef int32_t luxfer_candidate_kind;
 typedef struct luxfer_candidate {
     /** sizeof(luxfer_candidate), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** LUXFER_CANDIDATE_ value. */
+    /** Whether the candidate is an object or a material: a LUXFER_CANDIDATE_ value. */
     luxfer_candidate_kind kind;
     /** Index of the object's first mesh in the scene, or index of the material. */
     uint32_t index;
@@ -1057,8 +1077,9 @@ typedef struct luxfer_candidate {
     /** Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates. */
     const char *name;
     /**
-     * The reason for the score: an English sentence that states area, level_area, height and the shares of the formula
-     * in percent, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
+     * The reason for the score: an English sentence that states area, level_area and height, and in percent the
+     * factors min(1, level_area / F) and h of the formula of the score; or that no triangle is level. It is
+     * zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
      */
     const char *reason;
 } luxfer_candidate;

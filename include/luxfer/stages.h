@@ -53,8 +53,8 @@ luxfer_status luxfer_image_warp(luxfer_image *source,
  * Finds vanishing points and the camera from the straight lines of a photo. If a mask marks a plane, it also unwarps
  * that plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel
  * is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1 is
- * vertical. Camera space is x to the right, y down, z forward. "The paper" is "Single-Exemplar Lighting Style Transfer
- * via Emissive Texture Synthesis and Optimization".
+ * vertical. Camera space is x to the right, y down, z forward. Some values name the paper "Lighting Style Transfer":
+ * this is "Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization".
  * ================================================================================================================== */
 
 /** Lines, vanishing points and the unwarped plane of a photo. See luxfer_rectify_create. */
@@ -80,8 +80,8 @@ typedef struct luxfer_rectify_params {
     /** Distance of a vanishing point from a line: a LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT. */
     luxfer_metric metric;
     /**
-     * Half-width in radians of the band of directions around a pixel's gradient in which the pixel votes for lines,
-     * in [1e-4, pi/2], for LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
+     * For LUXFER_LINES_HOUGH: largest angle in radians between a pixel's gradient and the normal of a line for which
+     * the pixel votes, in [1e-4, pi/2]; default 0.0436, which is 2.5 degrees.
      */
     double hough_band;
     /**
@@ -113,8 +113,9 @@ typedef struct luxfer_rectify_params {
     /**
      * Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
      * distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN, the
-     * default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least two
-     * standard deviations, and the lines then meet better in vanishing points. 0: no distortion is undone.
+     * default: the distortion is measured. It is undone if it lies between -0.1 and -0.02, if its absolute value is at
+     * least two standard deviations, and if the lines meet better in vanishing points without it. 0: no distortion is
+     * undone.
      */
     double distortion;
 } luxfer_rectify_params;
@@ -154,7 +155,7 @@ typedef struct luxfer_rectify_report {
     double focal;
     /** Principal point in pixels. */
     double principal[2];
-    /** Room axes as unit vectors in camera space. */
+    /** Room axes as unit vectors in camera space: axis 0 points right, axis 1 down, axis 2 forward. */
     double axes[3][3];
     /** 1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0. */
     uint32_t is_unwarped;
@@ -195,8 +196,8 @@ typedef struct luxfer_rectify_report {
     /** Standard deviations of the field squareness; NaN where squareness is NaN. */
     double squareness_errors[3];
     /**
-     * The distortion that was undone: the field distortion of luxfer_rectify_params if it is set, or else the measured
-     * distortion or 0; 0 if no distortion was undone.
+     * The distortion that was undone, in the unit of the field distortion: the one that
+     * luxfer_rectify_params.distortion sets, else the measured one; 0 if none was undone.
      */
     double undone;
 } luxfer_rectify_report;
@@ -208,8 +209,8 @@ typedef struct luxfer_rectify_report {
 #define LUXFER_LINES_REGIONS 0
 
 /**
- * The paper's method (section 5.1): a Hough transform of Canny edges, in which an edge pixel votes only for lines
- * nearly perpendicular to its gradient.
+ * The method of Lighting Style Transfer (section 5.1): a Hough transform of Canny edges, in which an edge pixel votes
+ * only for lines nearly perpendicular to its gradient.
  */
 #define LUXFER_LINES_HOUGH 1
 
@@ -220,8 +221,8 @@ typedef struct luxfer_rectify_report {
 #define LUXFER_SEARCH_MANHATTAN 0
 
 /**
- * The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not run to an
- * earlier vanishing point.
+ * The method of Lighting Style Transfer, RANSAC: finds one vanishing point after the other, each from the lines that
+ * do not run to an earlier vanishing point.
  */
 #define LUXFER_SEARCH_SUCCESSIVE 1
 
@@ -232,12 +233,12 @@ typedef struct luxfer_rectify_report {
 #define LUXFER_METRIC_SEGMENT 0
 
 /**
- * The distance of Eq. 2 exactly as the paper prints it. It is measured for the whole part of the line that the photo
- * shows, instead of the detected segment.
+ * The distance exactly as Eq. 2 of Lighting Style Transfer states it. It is measured for the whole part of the line
+ * that the photo shows, instead of the detected segment.
  */
 #define LUXFER_METRIC_VISIBLE_LINE 1
 
-/** Set by the caller. */
+/** The caller has set the focal length. */
 #define LUXFER_FOCAL_GIVEN 0
 
 /** Estimated, mainly from the vanishing points of orthogonal directions. */
@@ -330,8 +331,9 @@ luxfer_status luxfer_rectify_get_report(luxfer_rectify *rectify,
 typedef struct luxfer_features luxfer_features;
 
 /**
- * How a network expects the photo's colours, which are sRGB in [0, 1]: a LUXFER_NORMALISATION_ value. An ONNX file
- * does not state it.
+ * Normalisation of the colours that a network expects as its input: a LUXFER_NORMALISATION_ value. The library first
+ * clamps the linear photo to [0, 1] and encodes it as sRGB. An ONNX file does not state the normalisation, so the
+ * caller must.
  */
 typedef int32_t luxfer_normalisation;
 
@@ -386,9 +388,9 @@ typedef struct luxfer_features_report {
 /**
  * The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y, z, towards
  * the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the viewing axis, near is
- * near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are x right, y down, z forward:
- * the axes of the camera or, after luxfer_features_set_view, of the room. luxfer_image_read reads up to four
- * channels at a time.
+ * near_plane and far is far_plane. Positions are relative to the camera, in the unit of near_plane. The axes are x
+ * right, y down, z forward: the axes of the camera or, after luxfer_features_set_view, of the room. luxfer_image_read
+ * reads up to four channels at a time.
  */
 #define LUXFER_FEATURES_CHANNELS 0
 
@@ -546,8 +548,9 @@ typedef struct luxfer_segment_params {
     /** Seed of the samples that are drawn; default 1. */
     uint64_t seed;
     /**
-     * Difference between neighbouring pixels in the first three channels below which the refinement treats them as one
-     * surface. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
+     * Smallest contrast that the refinement follows. Where the standard deviation of the first three channels within a
+     * window is below this value, the refinement smooths the mask; where it is above, the mask follows the edges. In
+     * the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
      */
     double refine_tolerance;
     /**
@@ -575,7 +578,8 @@ typedef struct luxfer_segment_report {
     uint32_t channels;
     /**
      * Expected share of wrong pixels, in [0, 1]. For a surface, it is estimated on strokes held out of the training.
-     * For lamps, it is the area of the lamps, times the share of wrong pixels that is usual in such lamps.
+     * For lamps, it is the area of the lamps, times the share of wrong pixels that is usual in such lamps, divided by
+     * the area of the mask of luxfer_segment_set_region or, without this mask, of the photo.
      */
     double error;
     /** Number of samples of the negative class. */
@@ -691,15 +695,16 @@ typedef int32_t luxfer_emission_law;
 
 /**
  * In settings only: the law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept
- * unless another law predicts the lamps clearly better. If the texture of a single exemplar then differs from the
- * photo by more than 100 %, the other laws are tried, and the texture that differs least is kept. It still raises
- * LUXFER_WARNING_NO_PATTERN.
+ * unless another law predicts the lamps clearly better. If luxfer_emission_report.error of the texture then exceeds 1,
+ * and there is a single exemplar, the other laws are tried, and the texture with the smallest error is kept. The
+ * emission has the warning LUXFER_WARNING_NO_PATTERN even then.
  */
 #define LUXFER_LAW_BEST 0
 
 /**
- * In settings only: the law that the autocorrelation of the lights suggests. A period counts only if the correlation
- * after a shift by this period is at least the setting min_regularity.
+ * In settings only: the law follows from the periods in the autocorrelation of the lights: LUXFER_LAW_LATTICE for two
+ * periods, LUXFER_LAW_ROW for one, and for none LUXFER_LAW_FREE or, if the exemplar shows few lamps, LUXFER_LAW_WHOLE.
+ * A period counts only if the correlation after a shift by this period is at least the setting min_regularity.
  */
 #define LUXFER_LAW_CORRELATION 1
 
@@ -766,8 +771,9 @@ typedef struct luxfer_emission_params {
     uint32_t whole_lamps;
     /**
      * Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-     * default 0. With LUXFER_LAW_FREE, the pattern has no fixed place: the offset must be 0, unless the texture is
-     * tileable and no light is copied patch by patch. It then shifts all lamps.
+     * default 0. With LUXFER_LAW_FREE, the offset shifts all lamps if the texture is tileable and no light is copied
+     * patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or the job ends
+     * with LUXFER_INVALID_ARGUMENT; with whole_lamps = 0 it has no effect.
      */
     double offset[2];
     /**
@@ -781,7 +787,8 @@ typedef struct luxfer_emission_params {
     /**
      * 1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the opposite
      * edge. Lights with periods are stretched so that a whole number of periods fits; the width and the height of the
-     * pattern change by less than half a period. Needs whole_lamps. Default 0.
+     * pattern change by less than half a period. Needs whole_lamps = 1, or else the job ends with
+     * LUXFER_INVALID_ARGUMENT. Default 0.
      */
     uint32_t tileable;
     /**
@@ -792,8 +799,8 @@ typedef struct luxfer_emission_params {
     uint32_t centred;
     /**
      * For LUXFER_LAW_FREE: number of patches, drawn at random from the exemplar, that are compared for each patch of
-     * the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the patches already placed beside
-     * it are compared in addition.
+     * the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the neighbours already placed in
+     * the texture are compared in addition.
      */
     uint32_t candidates;
     /** Must be 0. */
@@ -891,7 +898,7 @@ typedef struct luxfer_luminaire {
     uint32_t struct_size;
     /** Number of corners of the outline. */
     uint32_t corners;
-    /** Centre in texels, x and y. */
+    /** Centre in texels, x to the right and y down; the texture's top-left corner is (0, 0). */
     double centre[2];
     /** Extents of the lamp along its two principal axes, in texels, the longer one first. */
     double size[2];
@@ -904,8 +911,8 @@ typedef struct luxfer_luminaire {
     /** Mean linear RGB colour, where 1 is the photo's white. */
     float colour[3];
     /**
-     * Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the most
-     * lamps. 0 if the border of the texture cuts the lamp.
+     * Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %, are of
+     * one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
      */
     uint32_t kind;
 } luxfer_luminaire;
@@ -918,9 +925,10 @@ typedef struct luxfer_luminaire {
 
 /**
  * The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at the reduced
- * resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light. Channels 1 and 2 are
- * the x and y distances from the pixel to the nearest lit pixel, positive to the right and down, divided by a length L
- * and clamped to [-1, 1]. L is the side of a patch, but at most half the longer period if the lights repeat.
+ * resolution that working_side gives. Channel 0 is the confidence, in [0, 1], that the pixel shows a light. Channels 1
+ * and 2 are the x and y offsets from the pixel to the nearest lit pixel, positive to the right and down, divided by a
+ * length L and clamped to [-1, 1]; both are 1 if no pixel is lit. L is the side of a patch, but at most half the
+ * longer period if the lights repeat.
  */
 #define LUXFER_EMISSION_EXEMPLAR_GUIDES 2
 
@@ -998,11 +1006,12 @@ luxfer_status luxfer_emission_get_luminaire(luxfer_emission *emission,
                                             size_t size);
 
 /**
- * Gets a corner of a luminaire's outline, x and y in texels; index and corner start at 0. Any thread.
+ * Gets a corner of a luminaire's outline, x and y in texels as in luxfer_luminaire.centre; index and corner start at
+ * 0. Any thread.
  *
  * The outline runs where the lamp covers half of a texel. If the confidence of the lights has values between 0 and 1,
  * the sides of the outline are accurate to a quarter of a texel, and its corners to 0.71 texels. If unwarped pixels
- * are larger than texels, these figures are in unwarped pixels.
+ * are larger than texels, both limits are in unwarped pixels.
  *
  * In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only 0
  * and 1, and for lights of a composition that are copied patch by patch (see luxfer_emission_get_luminaire).
@@ -1062,10 +1071,10 @@ luxfer_status luxfer_emission_start_composition(luxfer_emission *emission,
 
 /**
  * Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
- * of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The tiles are equal to
- * the bit to the texture and the mask that luxfer_emission_start makes, whatever their sizes and the order in which
- * they are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several
- * threads may render tiles at the same time.
+ * of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. Whatever the sizes and
+ * the order of the tiles, they equal, to the bit, the texture and the mask that luxfer_emission_start makes with the
+ * same settings, unless LUXFER_LAW_BEST tries a second law there. The call takes up to a second per megapixel. The
+ * caller releases *tile. Any thread; several threads may render tiles at the same time.
  * LUXFER_NOT_READY before a job of luxfer_emission_start_composition has succeeded; LUXFER_INVALID_ARGUMENT if the
  * rectangle is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -1138,7 +1147,7 @@ typedef struct luxfer_relight_report {
     double response[3];
     /** Mean radiance of the target from all other light, in cd/m² per channel. */
     double background[3];
-    /** LUXFER_OUTCOME_ value of each channel. */
+    /** Whether each channel meets its target: a LUXFER_OUTCOME_ value. */
     luxfer_outcome outcome[3];
     /** Reserved; always 0. */
     uint32_t reserved;
@@ -1224,6 +1233,7 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
 /**
  * Sets rgb, the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
  * LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a channel is out of range.
  */
 luxfer_status luxfer_relight_set_target(luxfer_relight *relight,
                                         const float rgb[3]);

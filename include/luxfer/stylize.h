@@ -137,8 +137,12 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
 /* ==================================================================================================================
  * Settings of a stylisation
  *
- * Presets and settings. "The paper" is Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based Stylization of 3D
- * Renderings". The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
+ * Presets and settings. StyLit is the paper of Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based
+ * Stylization of 3D Renderings". As in StyLit, exemplar patches are matched with target patches in several passes. In
+ * each pass, every exemplar patch finds its nearest target patch among those that are still free. The pairs are
+ * accepted, smallest error first, until the sum of their errors reaches the error budget, which the library computes
+ * from the errors of the pass. This prevents a few patches from being used everywhere, and bad matches from being
+ * forced. The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
  * ================================================================================================================== */
 
 /** The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
@@ -166,7 +170,7 @@ typedef struct luxfer_stylize_params {
      */
     float guide_weight;
     /**
-     * Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
+     * Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; StyLit has 1. With a larger
      * factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
      */
     float coarse_guides;
@@ -177,22 +181,20 @@ typedef struct luxfer_stylize_params {
     uint32_t levels;
     /** Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting. */
     uint32_t iterations;
-    /**
-     * Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
-     */
+    /** Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; StyLit has 6. */
     uint32_t coarse_iterations;
     /** Rounds (EM iterations) on the finest level, in [1, 100]; default 1. */
     uint32_t finest_iterations;
     /**
-     * Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In these rounds
-     * each target patch takes its nearest match, without the error budget.
+     * Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; StyLit has 0. In these rounds
+     * each target patch takes its nearest exemplar patch, without the error budget.
      */
     uint32_t polish;
     /** Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1. */
     uint32_t search_iterations;
     /**
-     * Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
-     * default 0.9.
+     * The passes under the error budget end once they have matched this share of the target patches, in [0, 1];
+     * default 0.9. Each remaining target patch then takes its nearest exemplar patch.
      */
     float coverage;
     /**
@@ -200,8 +202,8 @@ typedef struct luxfer_stylize_params {
      */
     uint32_t passes;
     /**
-     * Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration, a
-     * target patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
+     * Number of iterations after each matching, in [0, 100]; default 2; StyLit has 0. In such an iteration, a target
+     * patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
      */
     uint32_t settle;
     /**
@@ -221,8 +223,8 @@ typedef struct luxfer_stylize_params {
      */
     luxfer_stylize_vote final_vote;
     /**
-     * 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
-     * default: full resolution.
+     * 1: work at half resolution, which makes the picture half as wide and high, with compressed guides: the few
+     * principal components of all guides instead of the guides themselves. 0, the default: full resolution.
      */
     uint32_t preview;
     /**
@@ -251,7 +253,10 @@ static inline luxfer_status luxfer_stylize_params_init(luxfer_stylize_params *pl
     return luxfer_init(LUXFER_STRUCT_STYLIZE_PARAMS, place, size);
 }
 
-/** A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset. */
+/**
+ * A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset, that is, LUXFER_STYLIZE_FULL,
+ * LUXFER_STYLIZE_FAST, LUXFER_STYLIZE_PREVIEW or LUXFER_STYLIZE_PAPER.
+ */
 typedef int32_t luxfer_stylize_preset;
 
 /** Full quality, the default. */
@@ -260,10 +265,10 @@ typedef int32_t luxfer_stylize_preset;
 /** Nearly the quality of LUXFER_STYLIZE_FULL in half the time. */
 #define LUXFER_STYLIZE_FAST 1
 
-/** Half resolution with compressed guides, for feedback while painting. */
+/** Half resolution with compressed guides (see luxfer_stylize_params.preview), for feedback while painting. */
 #define LUXFER_STYLIZE_PREVIEW 2
 
-/** The settings of the paper, for comparison. */
+/** The settings of StyLit (Fiser et al. 2016), for comparison. */
 #define LUXFER_STYLIZE_PAPER 3
 
 /** PatchMatch (Barnes et al. 2009), the default. */
@@ -272,10 +277,12 @@ typedef int32_t luxfer_stylize_preset;
 /** A k-d tree over the mean colours and guides of patches. */
 #define LUXFER_STYLIZE_SEARCH_KD_TREE 1
 
-/** The mean of the overlapping patches. */
+/** The mean of the colours that the overlapping patches have at the pixel. */
 #define LUXFER_STYLIZE_VOTE_PLAIN 0
 
-/** The mean of the overlapping patches, weighted so that closer matches count more. */
+/**
+ * The mean of the colours that the overlapping patches have at the pixel, weighted so that closer matches count more.
+ */
 #define LUXFER_STYLIZE_VOTE_WEIGHTED 1
 
 /**
@@ -292,9 +299,9 @@ typedef int32_t luxfer_stylize_preset;
 
 /**
  * A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MAJORITY. The proportion varies, so that each place of
- * the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
- * pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
- * luxfer_stylize_report.unblended_share is the share of whole pixels.
+ * the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus copies
+ * pixels of the artwork unchanged in rough paint, has soft transitions in smooth paint, and has edges as sharp as in
+ * the artwork. luxfer_stylize_report.unblended_share is the share of unchanged pixels.
  */
 #define LUXFER_STYLIZE_VOTE_ADAPTIVE 4
 
@@ -320,8 +327,8 @@ luxfer_status luxfer_stylize_get_preset(luxfer_stylize_preset preset,
  * ================================================================================================================== */
 
 /**
- * Flag of luxfer_stylize_add_guides: add the normals. Without it, they are used if the strokes of the artwork follow
- * the shapes.
+ * Flag of luxfer_stylize_add_guides: add the normals. Without this flag, the normals are used only if the strokes of
+ * the artwork follow the shapes.
  */
 #define LUXFER_GUIDES_WITH_NORMALS 1
 
@@ -353,8 +360,8 @@ typedef int32_t luxfer_guide_range;
 #define LUXFER_GUIDE_LIGHT 0
 
 /**
- * Data, such as normals, object codes and edges. The range of values that source and target have together is scaled
- * to [0, 1].
+ * Data, such as normals, object codes and edges. The range of values that all channels of source and target have
+ * together is scaled to [0, 1].
  */
 #define LUXFER_GUIDE_DATA 1
 
@@ -374,8 +381,8 @@ luxfer_status luxfer_stylize_set_artwork(luxfer_stylize *stylize,
 /**
  * Adds a guide, or replaces the guide of the same name. The image source shows the exemplar scene, and the image
  * target shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the
- * target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). weight, in
- * [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
+ * target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). name is UTF-8.
+ * weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
  *
  * All sources must have one size, and all targets one size. All guides together have at most 60 channels. In a
  * target, values that are not finite count as 0; pixels of a source with such values are not used.
@@ -401,8 +408,8 @@ luxfer_status luxfer_stylize_add_guide(luxfer_stylize *stylize,
  * normals guide the picture too, so that its strokes follow the shapes of the target; see the field normals_weight of
  * luxfer_stylize_report. In a sequence, the first frame decides. To overrule this, add the normals with a weight of
  * your own by LUXFER_GUIDES_WITH_NORMALS or luxfer_stylize_add_guide; with weight 0 they are not used.
- * LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
- * range.
+ * LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if extras has unknown flags
+ * or extra_weight is out of range.
  */
 luxfer_status luxfer_stylize_add_guides(luxfer_stylize *stylize,
                                         luxfer_guides *source,
@@ -436,10 +443,10 @@ luxfer_status luxfer_stylize_set_target_mask(luxfer_stylize *stylize,
  * light has changed, at silhouettes that have moved, and on places that come into view. Any thread.
  *
  * The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
- * position that the pixel's surface point had in the previous frame, x and y in pixels; NaN where the point was not
- * visible. luxfer_guides_get_motion computes it; a pass of motion vectors of another renderer serves too. If motion
- * is NULL, each job starts from nothing. If the motion contradicts the guides, luxfer_get_warnings of stylize has a
- * warning after the job.
+ * position that the pixel's surface point had in the previous frame, x (right) and y (down) in pixels; NaN where the
+ * point was not visible. luxfer_guides_get_motion computes it; a pass of motion vectors of another renderer serves
+ * too. If motion is NULL, each job starts from nothing. If the motion contradicts the guides, luxfer_get_warnings of
+ * stylize has a warning after the job.
  */
 luxfer_status luxfer_stylize_set_motion(luxfer_stylize *stylize,
                                         luxfer_image *motion);
@@ -460,8 +467,9 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
  * the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
  * from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
  * the time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if
- * the artwork changes there. A step at their border fades out into the new paint, as luxfer_stylize_start does it, but
- * strokes that cross the border are not continued anew. The caller releases *job. Any thread.
+ * the artwork changes there. At the border of these pixels, the update fades a step in colour out into the new paint,
+ * as luxfer_stylize_start does, but it does not continue strokes across the border anew. The caller releases *job. Any
+ * thread.
  * LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
  * with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
  * too.
@@ -531,8 +539,9 @@ typedef struct luxfer_stylize_report {
     /** Number of target pixels with a guide value that is not finite and was taken as 0. */
     uint64_t broken_target;
     /**
-     * Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
-     * LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
+     * Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the others are blends of
+     * several artwork pixels. LUXFER_STYLIZE_VOTE_ADAPTIVE gives rough paint a larger share than smooth paint.
+     * luxfer_stylize_update leaves this value as the last full run has set it.
      */
     double unblended_share;
     /**
@@ -556,8 +565,8 @@ typedef struct luxfer_stylize_report {
 #define LUXFER_STYLIZE_IMAGE_GUIDE_ERROR 1
 
 /**
- * Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was painted; 2
- * channels.
+ * Position in the artwork from which each pixel was painted, x and y in pixels of the artwork, (0.5, 0.5) for the
+ * top-left pixel; -1 where nothing was painted; 2 channels.
  */
 #define LUXFER_STYLIZE_IMAGE_SOURCES 2
 

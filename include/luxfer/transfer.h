@@ -52,15 +52,15 @@ typedef struct luxfer_pattern_params {
     double length;
     /**
      * Side of a texel in metres, in [0, 1e6]. 0, the default: the size of an unwarped pixel on the surface, or a
-     * larger size if the texture would otherwise exceed max_texels of luxfer_transfer_params. A size with which the
-     * texture exceeds max_texels is an error.
+     * larger size if the texture would otherwise exceed max_texels of luxfer_transfer_params. With a size at which the
+     * texture exceeds max_texels, the job ends with LUXFER_INVALID_ARGUMENT.
      */
     double texel_size;
     /** Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0. */
     double rotation;
     /**
-     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With LUXFER_LAW_FREE, lamps
-     * have no fixed places: a shift other than 0 is then an error unless the texture is tileable.
+     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With LUXFER_LAW_FREE, the
+     * pattern has no fixed place: the conditions of luxfer_emission_params.offset then apply.
      */
     double offset[2];
     /**
@@ -174,7 +174,7 @@ static inline luxfer_status luxfer_transfer_params_init(luxfer_transfer_params *
 /** No stage of a transfer, but a stylisation or its guides: occurs only in warnings. */
 #define LUXFER_STAGE_STYLIZE -2
 
-/** No stage, but a loaded scene: occurs only in warnings. */
+/** No stage, but a luxfer_scene: occurs only in warnings. */
 #define LUXFER_STAGE_SCENE -1
 
 /** Finds lines, vanishing points and the camera of the photo. */
@@ -244,15 +244,16 @@ luxfer_status luxfer_transfer_set_triangles(luxfer_transfer *transfer,
 
 /**
  * Sets an emissive texture: linear RGB, where 1 is the photo's white. The stage EMISSION then stretches it over the
- * surface instead of making a texture from the photo. texture may be NULL, the default: a texture is made from the
- * photo. Any thread.
+ * surface instead of making a texture from the photo. Its values must be finite and >= 0, or else the job ends with
+ * LUXFER_INVALID_ARGUMENT. texture may be NULL, the default: a texture is made from the photo. Any thread.
  */
 luxfer_status luxfer_transfer_set_texture(luxfer_transfer *transfer,
                                           luxfer_image *texture);
 
 /**
- * Sets the camera of the rendered picture. camera may be NULL, the default: the first camera of the scene, or a
- * camera in a corner of the room if the scene has none. Any thread.
+ * Sets the camera of the rendered picture. camera may be NULL, the default: the first camera of the scene, or a camera
+ * in a corner of the room if the scene has none. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
  */
 luxfer_status luxfer_transfer_set_camera(luxfer_transfer *transfer,
                                          const luxfer_camera_params *camera);
@@ -270,6 +271,7 @@ luxfer_status luxfer_transfer_set_strokes(luxfer_transfer *transfer,
  * Sets rectangles of the surface that stay without lamps, for example at ducts and sprinklers. The array zones holds
  * u0, v0, u1 and v1 of each of count rectangles, in metres from the surface's corner along its axes (luxfer_surface),
  * with u0 <= u1 and v0 <= v1. The rectangles replace earlier rectangles; zones may be NULL if count is 0. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a number is not finite, or u0 > u1 or v0 > v1.
  */
 luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
                                         const double *zones,
@@ -301,8 +303,9 @@ luxfer_status luxfer_transfer_use_segment(luxfer_transfer *transfer,
 
 /**
  * Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size, for example a mask drawn by hand;
- * phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, whose values are used as confidences in
- * [0, 1]. Any thread.
+ * phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, whose values are used as confidences in [0,
+ * 1]. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the mask has more channels, or a value outside [0, 1].
  */
 luxfer_status luxfer_transfer_use_mask(luxfer_transfer *transfer,
                                        luxfer_phase phase,
@@ -392,13 +395,13 @@ typedef struct luxfer_transfer_report {
      */
     double proposed_white;
     /**
-     * Lower bound of proposed_white: white_luminance_low if the photo's file states the exposure, else 32, for the
-     * 100 lux of a corridor.
+     * Lower bound of proposed_white in cd/m²: white_luminance_low if the photo's file states the exposure, else 32,
+     * the luminance of white paper in the 100 lux of a corridor.
      */
     double proposed_white_low;
     /**
-     * Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318, for 1000
-     * lux.
+     * Upper bound of proposed_white in cd/m²: white_luminance_high if the photo's file states the exposure, else 318,
+     * the luminance of white paper in 1000 lux.
      */
     double proposed_white_high;
     /**
@@ -430,7 +433,10 @@ typedef struct luxfer_fixture {
     double flux;
     /** Correlated colour temperature of the light in kelvin; 0 for a lamp that is off. */
     double cct;
-    /** Distance of the light from the blackbody locus in the CIE 1960 diagram, positive for greenish light. */
+    /**
+     * Signed distance of the light from the blackbody locus in the CIE 1960 diagram: positive for greenish light,
+     * negative for pinkish light.
+     */
     double duv;
 } luxfer_fixture;
 
@@ -484,7 +490,7 @@ typedef struct luxfer_fixture {
 /** The scene with the solved emission: the result. */
 #define LUXFER_SCENE_LIT 1
 
-/** The scene LUXFER_SCENE_LIT with white instead of coloured emission of equal luminance, for comparison. */
+/** As LUXFER_SCENE_LIT, but the emission is white, at unchanged luminance; for comparison. */
 #define LUXFER_SCENE_WHITE 2
 
 /**
@@ -556,10 +562,10 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
 /* ==================================================================================================================
  * Warnings
  *
- * Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect
- * with its figure and limit, the place in the photo, and the remedy. Each stage that has warnings has a list of them,
- * a transfer has the lists of all its stages, and a scene has a list. A list is a copy: it does not change when the
- * stage is started again. An empty list does not prove that a result is right.
+ * Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect, a
+ * measure of it (the severity) with the limit that it has passed, the place in the photo, and the remedy. Each stage
+ * that has warnings has a list of them, a transfer has the lists of all its stages, and a scene has a list. A list is
+ * a copy: it does not change when the stage is started again. An empty list does not prove that a result is right.
  * ================================================================================================================== */
 
 /** A list of warnings. See luxfer_get_warnings. */
@@ -583,8 +589,8 @@ typedef struct luxfer_warning {
     /** 1 if the warning points to a place, else 0. */
     uint32_t has_place;
     /**
-     * The figure that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what it
-     * measures.
+     * The number that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what this
+     * number measures.
      */
     double severity;
     /**
@@ -598,8 +604,8 @@ typedef struct luxfer_warning {
      */
     double place[2];
     /**
-     * The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as the
-     * luxfer_warnings.
+     * The defect: an English sentence, which for most warnings states the value of severity, in zero-terminated UTF-8.
+     * The string lives as long as the luxfer_warnings.
      */
     const char *message;
     /** The remedy: an English sentence in zero-terminated UTF-8. The string lives as long as the luxfer_warnings. */
@@ -608,7 +614,7 @@ typedef struct luxfer_warning {
 
 /**
  * The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the relative
- * standard deviation of the focal length.
+ * standard deviation of the focal length, or the limit if the limit is larger.
  */
 #define LUXFER_WARNING_FOCAL_ASSUMED 1
 
@@ -722,8 +728,9 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_DIM_LAMPS 22
 
 /**
- * A texture without any light would differ less from the photo than the synthesised texture does; the severity is
- * luxfer_emission_report.error. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
+ * A texture without any light would differ less from the photo than the synthesised texture does. The severity is the
+ * error of this texture; luxfer_emission_report.error is smaller if LUXFER_LAW_BEST has then kept the texture of
+ * another law. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
  */
 #define LUXFER_WARNING_NO_PATTERN 23
 

@@ -35,7 +35,7 @@ pub const LUXFER_CANDIDATE_MATERIAL: luxfer_candidate_kind = 1;
 pub struct luxfer_candidate {
     /// sizeof(luxfer_candidate), set by the function that fills the struct.
     pub struct_size: u32,
-    /// LUXFER_CANDIDATE_ value.
+    /// Whether the candidate is an object or a material: a LUXFER_CANDIDATE_ value.
     pub kind: luxfer_candidate_kind,
     /// Index of the object's first mesh in the scene, or index of the material.
     pub index: u32,
@@ -62,8 +62,9 @@ pub struct luxfer_candidate {
     pub triangles: u64,
     /// Name of the object or material, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
     pub name: *const c_char,
-    /// The reason for the score: an English sentence that states area, level_area, height and the shares of the formula
-    /// in percent, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
+    /// The reason for the score: an English sentence that states area, level_area and height, and in percent the
+    /// factors min(1, level_area / F) and h of the formula of the score; or that no triangle is level. It is
+    /// zero-terminated UTF-8. The string lives as long as the luxfer_candidates.
     pub reason: *const c_char,
 }
 

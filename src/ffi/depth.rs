@@ -9,9 +9,9 @@ use crate::features::DepthKind;
 
 /// Quantity that a depth map measures: a LUXFER_DEPTH_ value.
 pub type luxfer_depth_kind = i32;
-/// Distance along the viewing axis.
+/// Distance from the camera along the viewing axis (depth z).
 pub const LUXFER_DEPTH_ALONG_Z: luxfer_depth_kind = 0;
-/// Distance along the ray of each pixel.
+/// Distance from the camera along the ray of each pixel.
 pub const LUXFER_DEPTH_ALONG_RAY: luxfer_depth_kind = 1;
 
 pub(super) fn depth_kind(value: luxfer_depth_kind) -> Result<DepthKind> {

@@ -74,7 +74,7 @@ pub struct luxfer_preset {
     pub glare: f64,
     /// Minimum uniformity U0 (minimum / mean illuminance) of the task area.
     pub uniformity: f64,
-    /// Minimum colour rendering index.
+    /// Minimum general colour rendering index Ra.
     pub rendering: f64,
     /// Minimum mean illuminance of the walls, in lux; 0 if there is no requirement.
     pub walls: f64,

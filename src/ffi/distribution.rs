@@ -64,8 +64,8 @@ pub struct luxfer_distribution_report {
     pub rendering: f64,
     /// Number of variants of the product in a GLDF container; 1 for all other formats.
     pub variants: u32,
-    /// Number of light emitters in the file, or in the variant, whose distributions are added up; 1 for IES and
-    /// EULUMDAT.
+    /// Number of emitters whose distributions were added up: those of the file (TM-33) or of the variant that was read
+    /// (GLDF); 1 for IES and EULUMDAT.
     pub emitters: u32,
 }
 
@@ -216,8 +216,9 @@ pub unsafe extern "C" fn luxfer_distribution_get_report(
     })
 }
 
-/// Copies the luminaire's name into buffer as zero-terminated text, truncated to capacity bytes including the zero.
-/// *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
+/// Copies the luminaire's name into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero.
+/// *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity is 0. Any
+/// thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_name(
     distribution: *mut luxfer_distribution,
@@ -232,6 +233,7 @@ pub unsafe extern "C" fn luxfer_distribution_get_name(
 /// the C plane, which turns around the axis of the luminaire; gamma is the angle from straight down (0) to straight up
 /// (180). The intensity is interpolated linearly between the angles of the file, and is 0 for gamma outside them. Any
 /// thread.
+/// LUXFER_INVALID_ARGUMENT if an angle is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_intensity(
     distribution: *mut luxfer_distribution,

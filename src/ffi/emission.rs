@@ -35,9 +35,10 @@ pub const LUXFER_EMISSION_TEXTURE: luxfer_emission_image = 0;
 /// The mask of the texture: 1 on lamps, else 0; 1 channel.
 pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 /// The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at the reduced
-/// resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light. Channels 1 and 2 are
-/// the x and y distances from the pixel to the nearest lit pixel, positive to the right and down, divided by a length L
-/// and clamped to [-1, 1]. L is the side of a patch, but at most half the longer period if the lights repeat.
+/// resolution that working_side gives. Channel 0 is the confidence, in [0, 1], that the pixel shows a light. Channels 1
+/// and 2 are the x and y offsets from the pixel to the nearest lit pixel, positive to the right and down, divided by a
+/// length L and clamped to [-1, 1]; both are 1 if no pixel is lit. L is the side of a patch, but at most half the
+/// longer period if the lights repeat.
 pub const LUXFER_EMISSION_EXEMPLAR_GUIDES: luxfer_emission_image = 2;
 /// The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_GUIDES,
 /// copied with the patches that give the texture its colours.
@@ -74,8 +75,9 @@ pub struct luxfer_emission_params {
     /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,
     /// Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-    /// default 0. With LUXFER_LAW_FREE, the pattern has no fixed place: the offset must be 0, unless the texture is
-    /// tileable and no light is copied patch by patch. It then shifts all lamps.
+    /// default 0. With LUXFER_LAW_FREE, the offset shifts all lamps if the texture is tileable and no light is copied
+    /// patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or the job ends
+    /// with LUXFER_INVALID_ARGUMENT; with whole_lamps = 0 it has no effect.
     pub offset: [f64; 2],
     /// A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
     /// core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with the clipped
@@ -85,15 +87,16 @@ pub struct luxfer_emission_params {
     pub even_lamps: u32,
     /// 1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the opposite
     /// edge. Lights with periods are stretched so that a whole number of periods fits; the width and the height of the
-    /// pattern change by less than half a period. Needs whole_lamps. Default 0.
+    /// pattern change by less than half a period. Needs whole_lamps = 1, or else the job ends with
+    /// LUXFER_INVALID_ARGUMENT. Default 0.
     pub tileable: u32,
     /// 1: the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps, lies at
     /// the texture's centre, whichever lets the border cut the fewest lamps. The field offset shifts the pattern from
     /// there. Default 0. No effect with LUXFER_LAW_FREE.
     pub centred: u32,
     /// For LUXFER_LAW_FREE: number of patches, drawn at random from the exemplar, that are compared for each patch of
-    /// the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the patches already placed beside
-    /// it are compared in addition.
+    /// the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the neighbours already placed in
+    /// the texture are compared in addition.
     pub candidates: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -233,7 +236,7 @@ pub struct luxfer_luminaire {
     pub struct_size: u32,
     /// Number of corners of the outline.
     pub corners: u32,
-    /// Centre in texels, x and y.
+    /// Centre in texels, x to the right and y down; the texture's top-left corner is (0, 0).
     pub centre: [f64; 2],
     /// Extents of the lamp along its two principal axes, in texels, the longer one first.
     pub size: [f64; 2],
@@ -245,8 +248,8 @@ pub struct luxfer_luminaire {
     pub flux_share: f64,
     /// Mean linear RGB colour, where 1 is the photo's white.
     pub colour: [f32; 3],
-    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the most
-    /// lamps. 0 if the border of the texture cuts the lamp.
+    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %, are of
+    /// one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
     pub kind: u32,
 }
 
@@ -553,11 +556,12 @@ pub unsafe extern "C" fn luxfer_emission_get_luminaire(
     })
 }
 
-/// Gets a corner of a luminaire's outline, x and y in texels; index and corner start at 0. Any thread.
+/// Gets a corner of a luminaire's outline, x and y in texels as in luxfer_luminaire.centre; index and corner start at
+/// 0. Any thread.
 ///
 /// The outline runs where the lamp covers half of a texel. If the confidence of the lights has values between 0 and 1,
 /// the sides of the outline are accurate to a quarter of a texel, and its corners to 0.71 texels. If unwarped pixels
-/// are larger than texels, these figures are in unwarped pixels.
+/// are larger than texels, both limits are in unwarped pixels.
 ///
 /// In three cases the outline follows the sides of texels instead: for lamps up to two texels wide, for masks of only 0
 /// and 1, and for lights of a composition that are copied patch by patch (see luxfer_emission_get_luminaire).

@@ -91,10 +91,10 @@ pub unsafe extern "C" fn luxfer_emission_start_composition(
 }
 
 /// Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
-/// of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. The tiles are equal to
-/// the bit to the texture and the mask that luxfer_emission_start makes, whatever their sizes and the order in which
-/// they are rendered. The call takes up to a second per megapixel. The caller releases *tile. Any thread; several
-/// threads may render tiles at the same time.
+/// of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. Whatever the sizes and
+/// the order of the tiles, they equal, to the bit, the texture and the mask that luxfer_emission_start makes with the
+/// same settings, unless LUXFER_LAW_BEST tries a second law there. The call takes up to a second per megapixel. The
+/// caller releases *tile. Any thread; several threads may render tiles at the same time.
 /// LUXFER_NOT_READY before a job of luxfer_emission_start_composition has succeeded; LUXFER_INVALID_ARGUMENT if the
 /// rectangle is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]

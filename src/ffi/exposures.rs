@@ -25,8 +25,8 @@ use std::sync::Arc;
 
 /// Where the exposures of photos come from: a LUXFER_EXPOSURE_SOURCE_ value.
 pub type luxfer_exposure_source = i32;
-/// From the metadata and the pixels, weighted by their errors; from one of them where the other is missing. It is an
-/// error if they contradict each other by more than a third of a stop.
+/// From the metadata and the pixels, weighted by their errors; from one of them where the other is missing. If they
+/// contradict each other by more than a third of a stop, luxfer_image_merge_exposures returns LUXFER_INVALID_ARGUMENT.
 pub const LUXFER_EXPOSURE_SOURCE_BOTH: luxfer_exposure_source = 0;
 /// From the exposure time, ISO speed and f-number in the files.
 pub const LUXFER_EXPOSURE_SOURCE_METADATA: luxfer_exposure_source = 1;
@@ -44,12 +44,12 @@ pub struct luxfer_merge_params {
     pub source: luxfer_exposure_source,
     /// Index of the reference; -1, the default: the photo with the most pixels that are well exposed.
     pub reference: i32,
-    /// 0, the default: where exposures disagree beyond noise, because something moved, only the exposures are used that
-    /// agree with the reference, or, where the reference is clipped, with the next shorter exposure that is not
-    /// clipped; 1: all exposures are averaged.
+    /// What happens where exposures disagree beyond noise, because something moved. 0, the default: only those
+    /// exposures are averaged that agree with the reference or, where the reference is clipped, with the next shorter
+    /// exposure that is not clipped. 1: all exposures are averaged.
     pub keep_moving: u32,
-    /// Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
-    /// default 0.03. 0: the photos are not aligned, as for a camera on a tripod.
+    /// Largest shift between photos that are neighbours in exposure, as a part of the longer side of a photo, in [0,
+    /// 0.25]; default 0.03. 0: the photos are not aligned, as for a camera on a tripod.
     pub max_shift: f64,
     /// Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2 has a
     /// high dynamic range and is nowhere clipped.
@@ -123,15 +123,18 @@ pub struct luxfer_merge_report {
     pub clipped: f64,
     /// Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is 1.
     pub moved: f64,
-    /// Exposure of each photo relative to the reference.
+    /// Exposure of each photo divided by the exposure of the reference: a ratio of amounts of light, not of stops;
+    /// above 1 for a photo with more light, 1 for the reference.
     pub exposures: [f64; 16],
-    /// Relative standard error of each exposure; 0 if params->exposures states it.
+    /// Relative standard error of each exposure; 0 for exposures that luxfer_merge_params.exposures states.
     pub errors: [f64; 16],
-    /// Exposure of each photo relative to the reference according to the metadata; 0 = unknown.
+    /// Exposure of each photo divided by the exposure of the reference, as the metadata state it; 0 = unknown.
     pub stated: [f64; 16],
-    /// Column of each photo that shows the part of the view that column 0 of the reference shows.
+    /// Column of each photo that shows the part of the view that column 0 of the reference shows; below 0 if the photo
+    /// does not show that part.
     pub shift_x: [i32; 16],
-    /// Row of each photo that shows the part of the view that row 0 of the reference shows.
+    /// Row of each photo that shows the part of the view that row 0 of the reference shows; below 0 if the photo does
+    /// not show that part.
     pub shift_y: [i32; 16],
 }
 
@@ -171,7 +174,8 @@ impl luxfer_merge_report {
 /// caller releases *image. Any thread.
 ///
 /// The estimate of a pixel is the sum of its values divided by the sum of their exposures, which has the least noise
-/// that photons allow. Exposures fade out towards clipping. A single photo is returned as it is.
+/// that photons allow. The weight of a value falls from 1 at 80 % of the clipping value to 0 at the clipping value. A
+/// single photo is returned as it is.
 /// LUXFER_INVALID_ARGUMENT if a setting or a photo is not as stated, if samples are NaN or infinite, or if metadata and
 /// pixels contradict each other (the message states both); LUXFER_DEGENERATE if exposures are unknown and cannot be
 /// measured, because too few pixels are well exposed in two neighbours; LUXFER_OUT_OF_MEMORY beyond the memory budget.

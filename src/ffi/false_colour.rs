@@ -32,7 +32,7 @@ pub const LUXFER_UNIT_ILLUMINANCE: luxfer_unit = 1;
 pub struct luxfer_false_colour_params {
     /// sizeof(luxfer_false_colour_params), set by luxfer_false_colour_params_init.
     pub struct_size: u32,
-    /// LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR.
+    /// Scale that maps values to colours: a LUXFER_SCALE_ value; default LUXFER_SCALE_LINEAR.
     pub scale: luxfer_scale,
     /// Quantity of the values, whose unit is written above the bar: a LUXFER_UNIT_ value; default
     /// LUXFER_UNIT_LUMINANCE.

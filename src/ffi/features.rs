@@ -44,9 +44,9 @@ pub struct luxfer_features {
 pub type luxfer_features_image = i32;
 /// The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y, z, towards
 /// the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the viewing axis, near is
-/// near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are x right, y down, z forward:
-/// the axes of the camera or, after luxfer_features_set_view, of the room. luxfer_image_read reads up to four
-/// channels at a time.
+/// near_plane and far is far_plane. Positions are relative to the camera, in the unit of near_plane. The axes are x
+/// right, y down, z forward: the axes of the camera or, after luxfer_features_set_view, of the room. luxfer_image_read
+/// reads up to four channels at a time.
 pub const LUXFER_FEATURES_CHANNELS: luxfer_features_image = 0;
 /// Confidence of the depth of each pixel, in [0, 1]; 1 channel.
 pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
@@ -54,8 +54,9 @@ pub const LUXFER_FEATURES_DEPTH_CONFIDENCE: luxfer_features_image = 1;
 /// the depth map of later jobs, or of a luxfer_transfer, to avoid running the network again.
 pub const LUXFER_FEATURES_NETWORK_DEPTH: luxfer_features_image = 2;
 
-/// How a network expects the photo's colours, which are sRGB in [0, 1]: a LUXFER_NORMALISATION_ value. An ONNX file
-/// does not state it.
+/// Normalisation of the colours that a network expects as its input: a LUXFER_NORMALISATION_ value. The library first
+/// clamps the linear photo to [0, 1] and encodes it as sRGB. An ONNX file does not state the normalisation, so the
+/// caller must.
 pub type luxfer_normalisation = i32;
 /// Chosen by the size of the network's input: LUXFER_NORMALISATION_IMAGENET for 256 x 256, else
 /// LUXFER_NORMALISATION_HALF.

@@ -1,7 +1,8 @@
 //! Image
 //!
 //! An image holds 32-bit floating-point samples: scene-linear Rec.709 colour (D65 white), or data. It has up to 64
-//! channels; width and height are at most 65536 pixels. Rows run from top to bottom. An image never changes after its
+//! channels; width and height are at most 65536 pixels. Rows run from top to bottom. Points of an image are in pixels,
+//! x to the right and y down; the centre of the top-left pixel is (0.5, 0.5). An image never changes after its
 //! creation, so results are shared and not copied. A view describes pixels in the caller's memory; the library never
 //! keeps a pointer to them.
 
@@ -54,15 +55,15 @@ pub struct luxfer_image_view {
     pub struct_size: u32,
     /// Samples per pixel in [1, 4]; default 3.
     pub channels: u32,
-    /// LUXFER_SAMPLE_ value; default LUXFER_SAMPLE_F32.
+    /// Storage type of the samples: a LUXFER_SAMPLE_ value; default LUXFER_SAMPLE_F32.
     pub sample: luxfer_sample,
-    /// LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR.
+    /// Encoding of the samples: a LUXFER_COLOUR_ value; default LUXFER_COLOUR_LINEAR.
     pub colour_space: luxfer_colour_space,
     /// Width in pixels, in [1, 65536]; default 0: the caller must set it.
     pub width: u32,
     /// Height in pixels, in [1, 65536]; default 0: the caller must set it.
     pub height: u32,
-    /// LUXFER_VIEW_ flags, or 0, the default. Unknown flags are an error.
+    /// LUXFER_VIEW_ flags, or 0, the default. Unknown flags give LUXFER_INVALID_ARGUMENT.
     pub flags: u32,
     /// Must be 0.
     pub reserved: u32,
@@ -379,8 +380,9 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
 }
 
 /// Saves an image to a file; path is UTF-8, and its extension chooses the format. Any thread.
-/// - .png: 1, 3 or 4 channels. The values are multiplied by exposure (> 0, finite; 1 shows the value 1 as white),
-///   clamped to [0, 1] and encoded as 8-bit sRGB, which the file states.
+/// - .png: 1, 3 or 4 channels. The colours are multiplied by exposure (> 0, finite; 1 shows the value 1 as white),
+///   clamped to [0, 1] and encoded as 8-bit sRGB, which the file states. The fourth channel is alpha; it is only
+///   clamped.
 /// - .exr: up to 64 channels, unchanged, in 32-bit floating point, with the chromaticities of Rec.709. exposure is not
 ///   used.
 ///
@@ -441,8 +443,9 @@ pub unsafe extern "C" fn luxfer_image_get_size(
 }
 
 /// Copies an image into the caller's pixels. The view must have the image's width and height. It receives
-/// view->channels channels of the image, starting at first_channel; with LUXFER_COLOUR_SRGB, the library encodes them
-/// with the sRGB curve. For integer samples, values are clamped to [0, 1] and rounded, and NaN becomes 0. Any thread.
+/// view->channels channels of the image, starting at first_channel, counted from 0; with LUXFER_COLOUR_SRGB, the
+/// library encodes them with the sRGB curve. For integer samples, values are clamped to [0, 1] and rounded, and NaN
+/// becomes 0. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the view is inconsistent or does not fit the image.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_read(

@@ -2,9 +2,10 @@
 //!
 //! Functions with _start in their names, and luxfer_stylize_update, start long work and return a job at once; the job
 //! runs on threads of the library. The job works on the inputs as they are at its start: changing or releasing them
-//! later does not affect the job. While a job runs, its object refuses changes and further jobs
-//! (LUXFER_INVALID_OPERATION). Read the results from the object after the job has succeeded. Releasing the last
-//! reference to a running job cancels the job and waits until it has ended.
+//! later does not affect the job. A function that sets an input makes only the checks that its comment names. The job
+//! checks whether all inputs are valid and fit together, and otherwise ends with LUXFER_INVALID_ARGUMENT. While a job
+//! runs, its object refuses changes and further jobs (LUXFER_INVALID_OPERATION). Read the results from the object after
+//! the job has succeeded. Releasing the last reference to a running job cancels the job and waits until it has ended.
 //!
 //! Jobs of one context share its threads, so a job may have to wait until another job ends; a cancel request ends a
 //! waiting job at once. Only two calls wait for a job: luxfer_job_wait, and luxfer_release of the last reference to a

@@ -44,7 +44,8 @@ pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
 /// Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the emission has a
 /// texture, all lamps form one group.
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
-/// Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms one group,
+/// Lamps of about equal area form a group: in the order of their areas, a new group begins where the area grows by more
+/// than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot, directional) forms one group,
 /// and luminaires with the same distribution form one group for each distribution.
 pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
@@ -65,8 +66,9 @@ pub struct luxfer_lamps_params {
     pub free_colour: u32,
     /// Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity.
     pub max_scale: f64,
-    /// Weight of the regularisation, which pulls all powers towards one value, in [1e-9, 1e3]; default 1e-6. With a
-    /// small weight the goals are met, with a large weight the powers are nearly equal.
+    /// Weight of the regularisation, which pulls all powers towards the equal power that meets the goals best, in
+    /// [1e-9, 1e3]; default 1e-6. With a small weight the goals are met, with a large weight the powers are nearly
+    /// equal.
     pub regularisation: f64,
     /// Tolerance of the goals, in [1e-6, 1]; default 0.01. A goal counts as met if its light misses the target by at
     /// most tolerance times the target's brightest channel, plus the half-width of the 95 % confidence interval of the

@@ -18,7 +18,8 @@ use crate::relight::{Aspect, Constraint, MAX_LEVELS, MAX_WEIGHT, Quantity};
 
 /// Adds a goal: rgb is the mean radiance that a mesh should have, in cd/m² per channel, each in [0, 1e15]. quantity is
 /// a LUXFER_QUANTITY_ value. weight, in [0, 1e12], is the weight of this goal relative to the other goals. Any thread.
-/// LUXFER_NOT_FOUND if the scene has no such mesh, LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+/// LUXFER_NOT_FOUND if the scene has no such mesh; LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene;
+/// LUXFER_INVALID_ARGUMENT if rgb or weight is out of range.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_add_mesh(
@@ -47,7 +48,8 @@ pub unsafe extern "C" fn luxfer_lamps_add_mesh(
 
 /// Adds a goal: the mean illuminance in lux that a calculation grid should have, from light of any colour. grid may be
 /// NULL for its default. weight, in [0, 1e12], is the weight of this goal relative to the other goals. Any thread.
-/// LUXFER_INVALID_ARGUMENT if lux is not in [0, 1e15], LUXFER_INVALID_OPERATION before luxfer_lamps_set_scene.
+/// LUXFER_INVALID_ARGUMENT if lux is not in [0, 1e15] or weight is out of range; LUXFER_INVALID_OPERATION before
+/// luxfer_lamps_set_scene.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_add_grid(
     lamps: *mut luxfer_lamps,
@@ -82,7 +84,7 @@ fn add(stage: &Stage<Inputs, Output>, goal: StoredGoal) -> Result<()> {
 /// Makes a goal a lower or upper limit; constraint holds a LUXFER_CONSTRAINT_ value for each channel: red, green, blue.
 /// For a goal in lux, the three values must be equal. The parameter goal is the number of the goal: goals are numbered
 /// from 0 in the order in which they were added. Without this call a goal has LUXFER_CONSTRAINT_EQUAL. Any thread.
-/// LUXFER_NOT_FOUND if there is no such goal.
+/// LUXFER_NOT_FOUND if there is no such goal; LUXFER_INVALID_ARGUMENT if the values for a goal in lux differ.
 /// cbindgen:ptrs-as-arrays=[[constraint; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_set_constraint(

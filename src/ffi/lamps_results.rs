@@ -68,7 +68,7 @@ versioned!(luxfer_lamp, [80], {
 pub struct luxfer_lamps_goal {
     /// sizeof(luxfer_lamps_goal), set by the function that fills the struct.
     pub struct_size: u32,
-    /// LUXFER_OUTCOME_ value of each channel.
+    /// Whether each channel meets its target: a LUXFER_OUTCOME_ value.
     pub outcome: [luxfer_outcome; 3],
     /// Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is the
     /// wanted illuminance divided by pi.
@@ -117,7 +117,7 @@ pub struct luxfer_lamps_response {
     pub reserved: u32,
     /// Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel.
     pub mean: [f64; 3],
-    /// Half-widths of the 95 % confidence intervals of `mean`, per channel, in cd/m².
+    /// Half-widths of the 95 % confidence intervals of the field mean, per channel, in cd/m².
     pub half_width: [f64; 3],
 }
 
@@ -235,9 +235,9 @@ pub unsafe extern "C" fn luxfer_lamps_get_response(
     })
 }
 
-/// Copies the reason why goals are not met into buffer as zero-terminated text, truncated to capacity bytes including
-/// the zero. The text is empty if all goals of positive weight are met. *needed, unless NULL, receives the capacity
-/// that the whole text needs. Any thread.
+/// Copies the reason why goals are not met, in English, into buffer as zero-terminated UTF-8, truncated to capacity
+/// bytes including the zero. buffer may be NULL if capacity is 0. The text is empty if all goals of positive weight are
+/// met. *needed, unless NULL, receives the capacity that the whole text needs. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_reason(
@@ -252,8 +252,9 @@ pub unsafe extern "C" fn luxfer_lamps_get_reason(
     })
 }
 
-/// Gets the emission texture of the solution, in which every lamp is multiplied by its factor luxfer_lamp.scale;
-/// linear RGB. The caller releases *texture. Any thread.
+/// Gets the emission texture of the solution: the texture of the material, in which every lamp is multiplied by its
+/// factor luxfer_lamp.scale; linear RGB, in the unit of the old texture. Texels outside the lamps are unchanged. The
+/// caller releases *texture. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded, LUXFER_NOT_FOUND if the emission has no texture.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_lamps_get_texture(

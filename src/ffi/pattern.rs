@@ -37,13 +37,13 @@ pub struct luxfer_pattern_params {
     /// [1e-6, 1e6]; default 1. Other values of scale do not use it.
     pub length: f64,
     /// Side of a texel in metres, in [0, 1e6]. 0, the default: the size of an unwarped pixel on the surface, or a
-    /// larger size if the texture would otherwise exceed max_texels of luxfer_transfer_params. A size with which the
-    /// texture exceeds max_texels is an error.
+    /// larger size if the texture would otherwise exceed max_texels of luxfer_transfer_params. With a size at which the
+    /// texture exceeds max_texels, the job ends with LUXFER_INVALID_ARGUMENT.
     pub texel_size: f64,
     /// Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0.
     pub rotation: f64,
-    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With LUXFER_LAW_FREE, lamps
-    /// have no fixed places: a shift other than 0 is then an error unless the texture is tileable.
+    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With LUXFER_LAW_FREE, the
+    /// pattern has no fixed place: the conditions of luxfer_emission_params.offset then apply.
     pub offset: [f64; 2],
     /// Minimum distance in metres of lamps from the edge of the surface and from the zones of
     /// luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as the

@@ -95,14 +95,15 @@ pub struct luxfer_pendants_params {
     /// Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If you keep the default because
     /// the height is unknown, the unit of all lengths, known_length included, is the true height instead of the metre.
     pub ceiling: f64,
-    /// Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1.
+    /// Standard deviation in pixels of the x and of the y of each point in the array suspensions of
+    /// luxfer_pendants_find, in [0.05, 100]; default 1.
     pub suspension_error: f64,
     /// Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not used with
-    /// a rectification. Photo and masks must then be free of lens distortion.
+    /// a rectification. Without a rectification, the photo and the mask must be free of lens distortion.
     pub focal: f64,
     /// Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0 stands
-    /// for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It is 0 only
-    /// if the rectification was given the focal length.
+    /// for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. This estimate
+    /// is 0 only if the caller gave the rectification the focal length.
     pub focal_error: f64,
     /// Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5]; default
     /// 0. Not used with a rectification, which has its own value.
@@ -372,9 +373,10 @@ fn doubts(found: &Pendants, lamp: &Lamp) -> u32 {
 /// most one point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of
 /// lamps, even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for
 /// a lamp, and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
-/// LUXFER_DEGENERATE if the mask is empty, a lamp is too small or cut by the photo's border, or its outline is not that
-/// of a body of revolution: the message says what to paint. LUXFER_NOT_READY before the job of view has succeeded;
-/// LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting is out of range.
+/// LUXFER_DEGENERATE if the mask is empty, a lamp is too small, the photo's border cuts off more than 30 % of its
+/// outline, or its outline is not that of a body of revolution: the message says what to paint. LUXFER_NOT_READY before
+/// the job of view has succeeded; LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting
+/// is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_pendants_find(
     context: *mut luxfer_context,

@@ -38,7 +38,7 @@ pub struct luxfer_photo_metadata {
     pub struct_size: u32,
     /// EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied it: 2
     /// mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90 degrees, 8
-    /// counter-clockwise, 5 and 7 rotate by 90 degrees and mirror.
+    /// counter-clockwise, 5 mirrors about the diagonal from top left to bottom right, 7 about the other diagonal.
     pub orientation: u32,
     /// Focal length in pixels of the loaded photo; 0 if it is unknown, or if the aspect ratio shows that the photo was
     /// cropped.

@@ -56,8 +56,8 @@ versioned!(luxfer_glare_report, [40, 48], {
 });
 
 /// Gets the correlated colour temperature of rgb, a linear colour. *kelvin receives the temperature of the nearest
-/// blackbody, in [1000, 20000]; *duv receives the distance from this blackbody in the CIE 1960 diagram, positive for
-/// greenish colours. Any thread.
+/// blackbody, in [1000, 20000]; *duv receives the signed distance from this blackbody in the CIE 1960 diagram, positive
+/// for greenish and negative for pinkish colours. Any thread.
 /// LUXFER_DEGENERATE if the colour is black or not finite.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
@@ -81,8 +81,8 @@ pub unsafe extern "C" fn luxfer_colour_to_temperature(
 }
 
 /// Computes the linear colour, with luminance 1, of a colour temperature; rgb receives the colour. kelvin is in [1000,
-/// 20000]; duv, the distance from the blackbody in the CIE 1960 diagram, is in [-0.05, 0.05]. A channel is negative if
-/// the colour is out of gamut. Any thread.
+/// 20000]. duv, in [-0.05, 0.05], is the signed distance from the blackbody locus in the CIE 1960 diagram, positive
+/// towards green. A channel of rgb is negative if the colour is out of gamut. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]

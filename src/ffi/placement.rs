@@ -111,7 +111,7 @@ pub struct luxfer_placement {
     pub offset: [f64; 2],
     /// Number of repetitions of the texture along u and v of the surface.
     pub scale: [f64; 2],
-    /// Rotation of the placement in radians.
+    /// Rotation of the placement in radians, from u towards v.
     pub rotation: f64,
     /// Mean radiance of the target from the texture alone, in cd/m² per channel.
     pub response: [f64; 3],

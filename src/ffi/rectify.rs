@@ -3,8 +3,8 @@
 //! Finds vanishing points and the camera from the straight lines of a photo. If a mask marks a plane, it also unwarps
 //! that plane to a frontal view. Image points are in pixels, x to the right, y down; the centre of the top-left pixel
 //! is (0.5, 0.5). The room axes are the three orthogonal directions of the room: axes 0 and 2 are horizontal, axis 1 is
-//! vertical. Camera space is x to the right, y down, z forward. "The paper" is "Single-Exemplar Lighting Style Transfer
-//! via Emissive Texture Synthesis and Optimization".
+//! vertical. Camera space is x to the right, y down, z forward. Some values name the paper "Lighting Style Transfer":
+//! this is "Single-Exemplar Lighting Style Transfer via Emissive Texture Synthesis and Optimization".
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -32,8 +32,8 @@ pub type luxfer_lines = i32;
 /// Fits segments with sub-pixel end points to regions of similar gradient direction (LSD, Grompone von Gioi et al.
 /// 2010).
 pub const LUXFER_LINES_REGIONS: luxfer_lines = 0;
-/// The paper's method (section 5.1): a Hough transform of Canny edges, in which an edge pixel votes only for lines
-/// nearly perpendicular to its gradient.
+/// The method of Lighting Style Transfer (section 5.1): a Hough transform of Canny edges, in which an edge pixel votes
+/// only for lines nearly perpendicular to its gradient.
 pub const LUXFER_LINES_HOUGH: luxfer_lines = 1;
 
 /// The search for vanishing points: a LUXFER_SEARCH_ value.
@@ -41,8 +41,8 @@ pub type luxfer_search = i32;
 /// Finds three orthogonal directions and the focal length together, then refines each direction with the lines that run
 /// along it.
 pub const LUXFER_SEARCH_MANHATTAN: luxfer_search = 0;
-/// The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not run to an
-/// earlier vanishing point.
+/// The method of Lighting Style Transfer, RANSAC: finds one vanishing point after the other, each from the lines that
+/// do not run to an earlier vanishing point.
 pub const LUXFER_SEARCH_SUCCESSIVE: luxfer_search = 1;
 
 /// The distance of a vanishing point from a line, for LUXFER_SEARCH_SUCCESSIVE: a LUXFER_METRIC_ value.
@@ -50,13 +50,13 @@ pub type luxfer_metric = i32;
 /// The distance of the detected segment's end points from the line through its midpoint and the vanishing point;
 /// finite for vanishing points at infinity.
 pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
-/// The distance of Eq. 2 exactly as the paper prints it. It is measured for the whole part of the line that the photo
-/// shows, instead of the detected segment.
+/// The distance exactly as Eq. 2 of Lighting Style Transfer states it. It is measured for the whole part of the line
+/// that the photo shows, instead of the detected segment.
 pub const LUXFER_METRIC_VISIBLE_LINE: luxfer_metric = 1;
 
 /// The source of a focal length: a LUXFER_FOCAL_ value.
 pub type luxfer_focal_source = i32;
-/// Set by the caller.
+/// The caller has set the focal length.
 pub const LUXFER_FOCAL_GIVEN: luxfer_focal_source = 0;
 /// Estimated, mainly from the vanishing points of orthogonal directions.
 pub const LUXFER_FOCAL_FROM_VANISHING_POINTS: luxfer_focal_source = 1;
@@ -87,8 +87,8 @@ pub struct luxfer_rectify_params {
     pub search: luxfer_search,
     /// Distance of a vanishing point from a line: a LUXFER_METRIC_ value; default LUXFER_METRIC_SEGMENT.
     pub metric: luxfer_metric,
-    /// Half-width in radians of the band of directions around a pixel's gradient in which the pixel votes for lines,
-    /// in [1e-4, pi/2], for LUXFER_LINES_HOUGH; default 0.0436, which is 2.5 degrees.
+    /// For LUXFER_LINES_HOUGH: largest angle in radians between a pixel's gradient and the normal of a line for which
+    /// the pixel votes, in [1e-4, pi/2]; default 0.0436, which is 2.5 degrees.
     pub hough_band: f64,
     /// Focal length in pixels, in [1e-3, 1e9]; 0, the default: estimated from the lines, and from the photo's metadata
     /// if it has any.
@@ -110,8 +110,9 @@ pub struct luxfer_rectify_params {
     pub seed: u64,
     /// Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
     /// distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN, the
-    /// default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least two
-    /// standard deviations, and the lines then meet better in vanishing points. 0: no distortion is undone.
+    /// default: the distortion is measured. It is undone if it lies between -0.1 and -0.02, if its absolute value is at
+    /// least two standard deviations, and if the lines meet better in vanishing points without it. 0: no distortion is
+    /// undone.
     pub distortion: f64,
 }
 
@@ -199,7 +200,7 @@ pub struct luxfer_rectify_report {
     pub focal: f64,
     /// Principal point in pixels.
     pub principal: [f64; 2],
-    /// Room axes as unit vectors in camera space.
+    /// Room axes as unit vectors in camera space: axis 0 points right, axis 1 down, axis 2 forward.
     pub axes: [[f64; 3]; 3],
     /// 1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0.
     pub is_unwarped: u32,
@@ -231,8 +232,8 @@ pub struct luxfer_rectify_report {
     pub squareness: [f64; 3],
     /// Standard deviations of the field squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
-    /// The distortion that was undone: the field distortion of luxfer_rectify_params if it is set, or else the measured
-    /// distortion or 0; 0 if no distortion was undone.
+    /// The distortion that was undone, in the unit of the field distortion: the one that
+    /// luxfer_rectify_params.distortion sets, else the measured one; 0 if none was undone.
     pub undone: f64,
 }
 

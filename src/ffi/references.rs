@@ -2,6 +2,8 @@
 //!
 //! Handles of every kind are reference counted: a create function returns one reference, luxfer_retain adds one,
 //! luxfer_release removes one, and removing the last reference frees the object. Objects may be released in any order.
+//! An object that is given an image, a scene or another object as an input holds a reference of its own, so the caller
+//! may release the input at once.
 
 use super::guard::guard;
 use super::kinds::Kind;
@@ -17,10 +19,10 @@ pub unsafe extern "C" fn luxfer_retain(handle: *mut c_void) -> luxfer_status {
 
 /// Removes a reference to an object of any kind; NULL does nothing. Any thread.
 ///
-/// An object may outlive the caller's references: a context lives as long as the objects created in it, and a stage as
-/// long as its job, which continues. Two kinds of release take time. Releasing the last reference to a job cancels the
-/// job and waits until it has ended. Releasing the last reference to a context and all objects created in it waits
-/// until the worker threads have ended.
+/// An object may outlive the caller's references to it: a context lives until its last object is freed, and a stage
+/// with a running job lives until the job has ended. Two kinds of release take time. Releasing the last reference to a
+/// job cancels the job and waits until it has ended. The release that frees a context waits until the context's worker
+/// threads have ended.
 /// LUXFER_INVALID_ARGUMENT if handle is not a live object; the failure leaves no message.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_release(handle: *mut c_void) -> luxfer_status {

@@ -139,7 +139,7 @@ pub struct luxfer_relight_report {
     pub response: [f64; 3],
     /// Mean radiance of the target from all other light, in cd/m² per channel.
     pub background: [f64; 3],
-    /// LUXFER_OUTCOME_ value of each channel.
+    /// Whether each channel meets its target: a LUXFER_OUTCOME_ value.
     pub outcome: [luxfer_outcome; 3],
     /// Reserved; always 0.
     pub reserved: u32,
@@ -272,6 +272,7 @@ pub unsafe extern "C" fn luxfer_relight_set_scene(
 
 /// Sets rgb, the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
 /// LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a channel is out of range.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_relight_set_target(relight: *mut luxfer_relight, rgb: *const f32) -> luxfer_status {

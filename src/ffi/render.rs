@@ -246,6 +246,7 @@ pub unsafe extern "C" fn luxfer_render_set_scene(
 
 /// Sets the camera. camera may be one that luxfer_scene_get_camera has written, or NULL, the default, for the first
 /// camera of the scene. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_camera(
     render: *mut luxfer_render,

@@ -139,7 +139,7 @@ pub unsafe extern "C" fn luxfer_render_set_emitter_as(
 }
 
 /// Sets which AOVs are rendered: LUXFER_AOV_ flags combined with |, or 0, the default, for no AOV. Any thread.
-/// LUXFER_INVALID_OPERATION while a job runs.
+/// LUXFER_INVALID_ARGUMENT for unknown flags; LUXFER_INVALID_OPERATION while a job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_set_aovs(render: *mut luxfer_render, flags: u32) -> luxfer_status {
     enter(render, |stage| {
@@ -165,9 +165,10 @@ pub unsafe extern "C" fn luxfer_render_get_layer_count(render: *mut luxfer_rende
     })
 }
 
-/// Copies a layer's name into buffer as zero-terminated text, truncated to capacity bytes including the zero; index
-/// starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
-/// LUXFER_NOT_FOUND if there is no such layer.
+/// Copies a layer's name into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero; index
+/// starts at 0. *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity
+/// is 0. Any thread.
+/// LUXFER_NOT_READY before the first pass of a job; LUXFER_NOT_FOUND if there is no such layer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_get_layer_name(
     render: *mut luxfer_render,

@@ -140,7 +140,7 @@ pub unsafe extern "C" fn luxfer_render_add_part(render: *mut luxfer_render, path
     })
 }
 
-/// Removes all files to merge. Any thread.
+/// Empties the list of files to merge, which luxfer_render_add_part fills. The files stay on the disk. Any thread.
 /// LUXFER_INVALID_OPERATION while a job runs.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_clear_parts(render: *mut luxfer_render) -> luxfer_status {

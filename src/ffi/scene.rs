@@ -2,8 +2,13 @@
 //!
 //! A scene holds meshes, materials, textures, lights and cameras. Coordinates are in metres, right-handed, Y up, in
 //! world space. Emission is in cd/m²; punctual lights are in candela and lux, as in glTF 2.0. A job works on the scene
-//! as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the
-//! scene unchanged.
+//! as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
+//! unchanged.
+//!
+//! Most limits are checked by the calls that set the values, but some depend on several calls. A scene is valid if no
+//! light is above 1e15: no emission times a texel of its emission texture, no luminance of the faces of a luminaire, no
+//! intensity. Calls and jobs that trace a scene which is not valid, export it or list its candidates for the ceiling
+//! end with LUXFER_INVALID_ARGUMENT; the message names the object.
 
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, lock};
@@ -245,9 +250,11 @@ pub unsafe extern "C" fn luxfer_scene_create(
     })
 }
 
-/// Saves a scene as a GLB file that contains all textures; path is UTF-8 and ends in .glb. An existing file is
-/// replaced only once the new one is complete. Any thread.
-/// LUXFER_INVALID_ARGUMENT for another ending; LUXFER_IO if the file cannot be written.
+/// Saves a scene as a GLB file that contains all textures, as PNG with 8 bits per channel; path is UTF-8 and ends in
+/// .glb. The environment and meshes without triangles are left out. An existing file is replaced only once the new one
+/// is complete. Any thread.
+/// LUXFER_INVALID_ARGUMENT for another ending, or if the scene is not valid; LUXFER_UNSUPPORTED if a texture transform
+/// has shear, or the file would exceed 4 GiB; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *const c_char) -> luxfer_status {
     enter(scene, |object| {
@@ -259,9 +266,10 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB through write, a function of the caller, which receives the bytes and the pointer user. Any
-/// thread.
-/// LUXFER_IO if the function returns anything but 0.
+/// Writes a scene as GLB, as luxfer_scene_export does, through write, a function of the caller, which receives the
+/// bytes and the pointer user. Any thread.
+/// LUXFER_IO if the function returns anything but 0; LUXFER_INVALID_ARGUMENT and LUXFER_UNSUPPORTED as for
+/// luxfer_scene_export.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_export_memory(
     scene: *mut luxfer_scene,
@@ -307,9 +315,10 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
 
 /// Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
 /// the radiance of the environment is rgb in cd/m², each channel in [0, 1e15], from every direction. Otherwise the
-/// radiance is an equirectangular image in linear values, multiplied by rgb. The centre of the image is towards -z, its
-/// top towards +y, the centre of its right half towards +x. Light samples of the renderer are drawn in proportion to
-/// the brightness of the image. The image is copied. Any thread.
+/// radiance is an equirectangular image in linear values, multiplied by rgb; of its channels, the first three count, or
+/// the first one as grey if there are fewer than three. A product above 1e15 makes the scene not valid. The centre of
+/// the image is towards -z, its top towards +y, the centre of its right half towards +x. Light samples of the renderer
+/// are drawn in proportion to the brightness of the image. The image is copied. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
@@ -378,8 +387,9 @@ pub unsafe extern "C" fn luxfer_scene_find_surface(
 
 /// Maps an emissive texture (linear, 1 or 3 channels) onto the bounding rectangle of the surface that
 /// luxfer_scene_find_surface finds for name. The surface becomes a separate mesh with a copy of its material. On the
-/// side towards the room, this copy emits texture * rgb in cd/m², each factor in [0, 1e15]. *mesh and *material receive
-/// the indices of the new mesh and material; each pointer may be NULL. Any thread.
+/// side towards the room, this copy emits the texture times rgb, in cd/m². The values of the texture are >= 0 and
+/// finite, the channels of rgb are in [0, 1e15]; a product above 1e15 makes the scene not valid. *mesh and *material
+/// receive the indices of the new mesh and material; each pointer may be NULL. Any thread.
 /// Errors: as for luxfer_scene_find_surface; LUXFER_INVALID_ARGUMENT if a value is negative or not finite;
 /// LUXFER_OUT_OF_MEMORY if the memory budget would be exceeded.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]

@@ -46,7 +46,8 @@ pub struct luxfer_light_params {
     /// Half angle of the cone in which a spot light has its full intensity, in radians, in [0, outer_angle]; default
     /// 0.
     pub inner_angle: f32,
-    /// Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4.
+    /// Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4. From inner_angle to
+    /// outer_angle, the intensity falls smoothly to 0, as in glTF.
     pub outer_angle: f32,
     /// Must be 0.
     pub reserved: u32,
@@ -185,7 +186,8 @@ pub(super) fn axes(place: &str, axis: [f32; 3], c0: [f32; 3]) -> Result<[Vec3; 2
 /// distribution. *index, unless NULL, receives its index among the punctual lights. The luminaire shines from the faces
 /// of its luminous opening. Faces that do not emit are black: they block light and do not reflect it. If the file of
 /// the distribution states no size, or if params selects LUXFER_LUMINAIRE_POINT, the luminaire shines from a point
-/// instead, and LUXFER_WARNING_NOT_IN_PICTURE names it. params may be NULL for the defaults. Any thread.
+/// instead, and the scene gets the warning LUXFER_WARNING_NOT_IN_PICTURE (luxfer_get_warnings). params may be NULL for
+/// the defaults. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_luminaire(

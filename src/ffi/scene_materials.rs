@@ -89,7 +89,8 @@ pub type luxfer_texture_role = i32;
 pub const LUXFER_TEXTURE_BASE_COLOR: luxfer_texture_role = 0;
 /// Metallic-roughness: the green channel multiplies the roughness, the blue channel multiplies the metallic value.
 pub const LUXFER_TEXTURE_METALLIC_ROUGHNESS: luxfer_texture_role = 1;
-/// Normals in tangent space.
+/// Normals in tangent space, as in glTF 2.0: a channel value c in [0, 1] stands for 2 c - 1, and green points up in the
+/// image (OpenGL convention). Load the map as data (LUXFER_COLOUR_LINEAR), not as sRGB.
 pub const LUXFER_TEXTURE_NORMAL: luxfer_texture_role = 2;
 /// Emission: the texture multiplies the emission; it is looked up without interpolation.
 pub const LUXFER_TEXTURE_EMISSION: luxfer_texture_role = 3;
@@ -209,8 +210,8 @@ pub unsafe extern "C" fn luxfer_scene_get_material(
 /// Adds a texture to a scene: an image in linear values with 1, 3 or 4 channels, of which the fourth is alpha. wrap_u
 /// and wrap_v are LUXFER_WRAP_ values. The image is copied. *index, unless NULL, receives the texture's index. Any
 /// thread.
-/// LUXFER_INVALID_ARGUMENT if the image has 2 channels or a value that is not finite; LUXFER_OUT_OF_MEMORY beyond the
-/// memory budget.
+/// LUXFER_INVALID_ARGUMENT if the image has another number of channels or a value that is not finite;
+/// LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_add_texture(
     scene: *mut luxfer_scene,

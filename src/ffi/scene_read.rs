@@ -15,15 +15,15 @@ use std::ffi::c_char;
 
 /// An attribute of the vertices of a mesh: a LUXFER_VERTEX_ value.
 pub type luxfer_vertex_attribute = i32;
-/// Positions, three floats per vertex.
+/// Positions in metres, three floats per vertex.
 pub const LUXFER_VERTEX_POSITION: luxfer_vertex_attribute = 0;
 /// Normals, three floats per vertex.
 pub const LUXFER_VERTEX_NORMAL: luxfer_vertex_attribute = 1;
-/// The first set of texture coordinates, two floats per vertex.
+/// The first set of texture coordinates, two floats per vertex; (0, 0) is the top-left corner of a texture.
 pub const LUXFER_VERTEX_UV_0: luxfer_vertex_attribute = 2;
 /// The second set of texture coordinates, two floats per vertex.
 pub const LUXFER_VERTEX_UV_1: luxfer_vertex_attribute = 3;
-/// Colours, four floats per vertex.
+/// Colours: linear red, green, blue and alpha, four floats per vertex.
 pub const LUXFER_VERTEX_COLOUR: luxfer_vertex_attribute = 4;
 
 /// Sizes and attributes of a mesh.
@@ -88,7 +88,8 @@ pub unsafe extern "C" fn luxfer_scene_get_mesh(
 }
 
 /// Copies the name of a mesh into buffer as zero-terminated UTF-8, truncated to capacity bytes including the zero.
-/// *needed, unless NULL, receives the capacity that the whole name needs. Any thread.
+/// *needed, unless NULL, receives the capacity that the whole name needs. buffer may be NULL if capacity is 0. Any
+/// thread.
 /// LUXFER_NOT_FOUND if there is no such mesh.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_get_mesh_name(

@@ -75,8 +75,9 @@ pub struct luxfer_segment_params {
     pub ridge: f64,
     /// Seed of the samples that are drawn; default 1.
     pub seed: u64,
-    /// Difference between neighbouring pixels in the first three channels below which the refinement treats them as one
-    /// surface. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
+    /// Smallest contrast that the refinement follows. Where the standard deviation of the first three channels within a
+    /// window is below this value, the refinement smooths the mask; where it is above, the mask follows the edges. In
+    /// the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
     pub refine_tolerance: f64,
     /// Kind of object that the positive strokes mark: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the
     /// subject is lamps, the settings above have no effect.
@@ -135,7 +136,8 @@ pub struct luxfer_segment_report {
     /// Channels of the features that the segmentation has used, bit i for channel i.
     pub channels: u32,
     /// Expected share of wrong pixels, in [0, 1]. For a surface, it is estimated on strokes held out of the training.
-    /// For lamps, it is the area of the lamps, times the share of wrong pixels that is usual in such lamps.
+    /// For lamps, it is the area of the lamps, times the share of wrong pixels that is usual in such lamps, divided by
+    /// the area of the mask of luxfer_segment_set_region or, without this mask, of the photo.
     pub error: f64,
     /// Number of samples of the negative class.
     pub negative_samples: u64,

@@ -161,6 +161,7 @@ pub unsafe extern "C" fn luxfer_strokes_create(
 /// for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
 /// floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. A
 /// pixel that several strokes cover belongs to the last one. Any thread.
+/// LUXFER_INVALID_ARGUMENT if there is no point, a coordinate is not finite, or radius or positive is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add(
     strokes: *mut luxfer_strokes,
@@ -184,8 +185,9 @@ pub unsafe extern "C" fn luxfer_strokes_add(
 }
 
 /// Adds the strokes of a drawing, an image of the size given to luxfer_strokes_create. Green (0, 255, 0) is plane, red
-/// (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and transparent pixels
-/// are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
+/// (255, 0, 0) not plane, yellow (255, 255, 0) light, blue (0, 0, 255) not light; other colours and pixels with an
+/// alpha below 0.5 are ignored. Each sRGB channel of a pixel may differ from the colour by 30 % of its range. Connected
+/// regions of one colour with fewer than 4 pixels are ignored. Load drawings with LUXFER_COLOUR_SRGB. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the size differs or the drawing has fewer than 3 channels.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add_image(

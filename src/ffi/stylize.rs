@@ -37,12 +37,12 @@ pub type luxfer_guide_range = i32;
 /// Linear light >= 0, such as a rendering. Its values are clipped at white (1) and compared in the sRGB encoding. If
 /// the 99.9th percentile of source and target together exceeds 1, all values are divided by this percentile first.
 pub const LUXFER_GUIDE_LIGHT: luxfer_guide_range = 0;
-/// Data, such as normals, object codes and edges. The range of values that source and target have together is scaled
-/// to [0, 1].
+/// Data, such as normals, object codes and edges. The range of values that all channels of source and target have
+/// together is scaled to [0, 1].
 pub const LUXFER_GUIDE_DATA: luxfer_guide_range = 1;
 
-/// Flag of luxfer_stylize_add_guides: add the normals. Without it, they are used if the strokes of the artwork follow
-/// the shapes.
+/// Flag of luxfer_stylize_add_guides: add the normals. Without this flag, the normals are used only if the strokes of
+/// the artwork follow the shapes.
 pub const LUXFER_GUIDES_WITH_NORMALS: u32 = 1;
 /// Flag of luxfer_stylize_add_guides: add the edges, for shapes finer than the brush strokes.
 pub const LUXFER_GUIDES_WITH_EDGES: u32 = 2;
@@ -175,8 +175,8 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
 
 /// Adds a guide, or replaces the guide of the same name. The image source shows the exemplar scene, and the image
 /// target shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the
-/// target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). weight, in
-/// [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
+/// target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). name is UTF-8.
+/// weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
 ///
 /// All sources must have one size, and all targets one size. All guides together have at most 60 channels. In a
 /// target, values that are not finite count as 0; pixels of a source with such values are not used.
@@ -212,8 +212,8 @@ pub unsafe extern "C" fn luxfer_stylize_add_guide(
 /// normals guide the picture too, so that its strokes follow the shapes of the target; see the field normals_weight of
 /// luxfer_stylize_report. In a sequence, the first frame decides. To overrule this, add the normals with a weight of
 /// your own by LUXFER_GUIDES_WITH_NORMALS or luxfer_stylize_add_guide; with weight 0 they are not used.
-/// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if an argument is out of
-/// range.
+/// LUXFER_NOT_READY before the guides of both scenes are rendered; LUXFER_INVALID_ARGUMENT if extras has unknown flags
+/// or extra_weight is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_add_guides(
     stylize: *mut luxfer_stylize,
@@ -324,10 +324,10 @@ pub unsafe extern "C" fn luxfer_stylize_set_target_mask(
 /// light has changed, at silhouettes that have moved, and on places that come into view. Any thread.
 ///
 /// The image motion has 2 channels and the size of the guides' targets. For each pixel it holds the offset to the
-/// position that the pixel's surface point had in the previous frame, x and y in pixels; NaN where the point was not
-/// visible. luxfer_guides_get_motion computes it; a pass of motion vectors of another renderer serves too. If motion
-/// is NULL, each job starts from nothing. If the motion contradicts the guides, luxfer_get_warnings of stylize has a
-/// warning after the job.
+/// position that the pixel's surface point had in the previous frame, x (right) and y (down) in pixels; NaN where the
+/// point was not visible. luxfer_guides_get_motion computes it; a pass of motion vectors of another renderer serves
+/// too. If motion is NULL, each job starts from nothing. If the motion contradicts the guides, luxfer_get_warnings of
+/// stylize has a warning after the job.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_stylize_set_motion(
     stylize: *mut luxfer_stylize,
@@ -393,8 +393,9 @@ pub unsafe extern "C" fn luxfer_stylize_start(
 /// the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
 /// from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
 /// the time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if
-/// the artwork changes there. A step at their border fades out into the new paint, as luxfer_stylize_start does it, but
-/// strokes that cross the border are not continued anew. The caller releases *job. Any thread.
+/// the artwork changes there. At the border of these pixels, the update fades a step in colour out into the new paint,
+/// as luxfer_stylize_start does, but it does not continue strokes across the border anew. The caller releases *job. Any
+/// thread.
 /// LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
 /// with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
 /// too.

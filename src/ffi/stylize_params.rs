@@ -1,7 +1,11 @@
 //! Settings of a stylisation
 //!
-//! Presets and settings. "The paper" is Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based Stylization of 3D
-//! Renderings". The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
+//! Presets and settings. StyLit is the paper of Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based
+//! Stylization of 3D Renderings". As in StyLit, exemplar patches are matched with target patches in several passes. In
+//! each pass, every exemplar patch finds its nearest target patch among those that are still free. The pairs are
+//! accepted, smallest error first, until the sum of their errors reaches the error budget, which the library computes
+//! from the errors of the pass. This prevents a few patches from being used everywhere, and bad matches from being
+//! forced. The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
 
 use super::guard::guard;
 use super::params::{self, versioned};
@@ -10,15 +14,16 @@ use crate::error::{Error, Result};
 use crate::patch::VoteMode;
 use crate::stylize::{self, Finder};
 
-/// A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset.
+/// A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset, that is, LUXFER_STYLIZE_FULL,
+/// LUXFER_STYLIZE_FAST, LUXFER_STYLIZE_PREVIEW or LUXFER_STYLIZE_PAPER.
 pub type luxfer_stylize_preset = i32;
 /// Full quality, the default.
 pub const LUXFER_STYLIZE_FULL: luxfer_stylize_preset = 0;
 /// Nearly the quality of LUXFER_STYLIZE_FULL in half the time.
 pub const LUXFER_STYLIZE_FAST: luxfer_stylize_preset = 1;
-/// Half resolution with compressed guides, for feedback while painting.
+/// Half resolution with compressed guides (see luxfer_stylize_params.preview), for feedback while painting.
 pub const LUXFER_STYLIZE_PREVIEW: luxfer_stylize_preset = 2;
-/// The settings of the paper, for comparison.
+/// The settings of StyLit (Fiser et al. 2016), for comparison.
 pub const LUXFER_STYLIZE_PAPER: luxfer_stylize_preset = 3;
 
 /// The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value.
@@ -30,9 +35,9 @@ pub const LUXFER_STYLIZE_SEARCH_KD_TREE: luxfer_stylize_search = 1;
 
 /// How a pixel is computed from overlapping patches: a LUXFER_STYLIZE_VOTE_ value.
 pub type luxfer_stylize_vote = i32;
-/// The mean of the overlapping patches.
+/// The mean of the colours that the overlapping patches have at the pixel.
 pub const LUXFER_STYLIZE_VOTE_PLAIN: luxfer_stylize_vote = 0;
-/// The mean of the overlapping patches, weighted so that closer matches count more.
+/// The mean of the colours that the overlapping patches have at the pixel, weighted so that closer matches count more.
 pub const LUXFER_STYLIZE_VOTE_WEIGHTED: luxfer_stylize_vote = 1;
 /// Of the overlapping patches' colours, the colour that is nearest to their mean, so that every colour occurs in the
 /// artwork.
@@ -41,9 +46,9 @@ pub const LUXFER_STYLIZE_VOTE_NEAREST: luxfer_stylize_vote = 2;
 /// meet, each stays whole up to the seam.
 pub const LUXFER_STYLIZE_VOTE_MAJORITY: luxfer_stylize_vote = 3;
 /// A blend of LUXFER_STYLIZE_VOTE_PLAIN and LUXFER_STYLIZE_VOTE_MAJORITY. The proportion varies, so that each place of
-/// the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has whole
-/// pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
-/// luxfer_stylize_report.unblended_share is the share of whole pixels.
+/// the picture has as much fine detail as the place of the artwork from which it was painted. The blend thus copies
+/// pixels of the artwork unchanged in rough paint, has soft transitions in smooth paint, and has edges as sharp as in
+/// the artwork. luxfer_stylize_report.unblended_share is the share of unchanged pixels.
 pub const LUXFER_STYLIZE_VOTE_ADAPTIVE: luxfer_stylize_vote = 4;
 
 /// Settings of a stylisation. Fill them with luxfer_stylize_params_init or luxfer_stylize_get_preset. The defaults
@@ -60,7 +65,7 @@ pub struct luxfer_stylize_params {
     /// Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
     /// 1e6]; default 2.
     pub guide_weight: f32,
-    /// Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a larger
+    /// Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; StyLit has 1. With a larger
     /// factor the picture follows the guides more closely, with smaller connected pieces of the artwork.
     pub coarse_guides: f32,
     /// Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16]; default 6.
@@ -68,22 +73,22 @@ pub struct luxfer_stylize_params {
     pub levels: u32,
     /// Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then voting.
     pub iterations: u32,
-    /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper has 6.
+    /// Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; StyLit has 6.
     pub coarse_iterations: u32,
     /// Rounds (EM iterations) on the finest level, in [1, 100]; default 1.
     pub finest_iterations: u32,
-    /// Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In these rounds
-    /// each target patch takes its nearest match, without the error budget.
+    /// Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; StyLit has 0. In these rounds
+    /// each target patch takes its nearest exemplar patch, without the error budget.
     pub polish: u32,
     /// Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1.
     pub search_iterations: u32,
-    /// Share of the target that is matched under the error budget before the rest is matched without it, in [0, 1];
-    /// default 0.9.
+    /// The passes under the error budget end once they have matched this share of the target patches, in [0, 1];
+    /// default 0.9. Each remaining target patch then takes its nearest exemplar patch.
     pub coverage: f32,
     /// Maximum number of matching passes under the error budget in one round (EM iteration), in [1, 1000]; default 6.
     pub passes: u32,
-    /// Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration, a
-    /// target patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
+    /// Number of iterations after each matching, in [0, 100]; default 2; StyLit has 0. In such an iteration, a target
+    /// patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer seams.
     pub settle: u32,
     /// Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between two
     /// neighbouring target patches whose matches are not neighbours in the exemplar. The cost applies to the iterations
@@ -95,8 +100,8 @@ pub struct luxfer_stylize_params {
     /// How a pixel of the final picture, after the last round, is computed from overlapping patches: a
     /// LUXFER_STYLIZE_VOTE_ value; default LUXFER_STYLIZE_VOTE_ADAPTIVE.
     pub final_vote: luxfer_stylize_vote,
-    /// 1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
-    /// default: full resolution.
+    /// 1: work at half resolution, which makes the picture half as wide and high, with compressed guides: the few
+    /// principal components of all guides instead of the guides themselves. 0, the default: full resolution.
     pub preview: u32,
     /// 1: keep the data that luxfer_stylize_update needs, about as much memory as all guides; 0, the default: free it.
     pub keep_for_update: u32,

@@ -25,8 +25,8 @@ pub const LUXFER_STYLIZE_IMAGE_PICTURE: luxfer_stylize_image = 0;
 /// Weighted root mean square difference, in [0, 1], between the guides at a pixel and the guides at the place in the
 /// exemplar from which the pixel was painted; 1 channel. It is high where nothing in the exemplar fits.
 pub const LUXFER_STYLIZE_IMAGE_GUIDE_ERROR: luxfer_stylize_image = 1;
-/// Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was painted; 2
-/// channels.
+/// Position in the artwork from which each pixel was painted, x and y in pixels of the artwork, (0.5, 0.5) for the
+/// top-left pixel; -1 where nothing was painted; 2 channels.
 pub const LUXFER_STYLIZE_IMAGE_SOURCES: luxfer_stylize_image = 2;
 
 /// Quality of a stylisation.
@@ -60,8 +60,9 @@ pub struct luxfer_stylize_report {
     pub broken_source: u64,
     /// Number of target pixels with a guide value that is not finite and was taken as 0.
     pub broken_target: u64,
-    /// Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
-    /// LUXFER_STYLIZE_VOTE_ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it.
+    /// Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the others are blends of
+    /// several artwork pixels. LUXFER_STYLIZE_VOTE_ADAPTIVE gives rough paint a larger share than smooth paint.
+    /// luxfer_stylize_update leaves this value as the last full run has set it.
     pub unblended_share: f64,
     /// Weight of the normals as a guide, where each guide of light has 1; 0: the normals are not used. Unless the
     /// caller has given this weight, it is above 0 only if the strokes of the artwork follow the shapes; see

@@ -47,7 +47,7 @@ pub struct luxfer_transfer {
 pub type luxfer_stage = i32;
 /// No stage of a transfer, but a stylisation or its guides: occurs only in warnings.
 pub const LUXFER_STAGE_STYLIZE: luxfer_stage = -2;
-/// No stage, but a loaded scene: occurs only in warnings.
+/// No stage, but a luxfer_scene: occurs only in warnings.
 pub const LUXFER_STAGE_SCENE: luxfer_stage = -1;
 /// Finds lines, vanishing points and the camera of the photo.
 pub const LUXFER_STAGE_VIEW: luxfer_stage = 0;
@@ -312,8 +312,8 @@ pub unsafe extern "C" fn luxfer_transfer_set_triangles(
 }
 
 /// Sets an emissive texture: linear RGB, where 1 is the photo's white. The stage EMISSION then stretches it over the
-/// surface instead of making a texture from the photo. texture may be NULL, the default: a texture is made from the
-/// photo. Any thread.
+/// surface instead of making a texture from the photo. Its values must be finite and >= 0, or else the job ends with
+/// LUXFER_INVALID_ARGUMENT. texture may be NULL, the default: a texture is made from the photo. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_texture(
     transfer: *mut luxfer_transfer,
@@ -328,8 +328,9 @@ pub unsafe extern "C" fn luxfer_transfer_set_texture(
     })
 }
 
-/// Sets the camera of the rendered picture. camera may be NULL, the default: the first camera of the scene, or a
-/// camera in a corner of the room if the scene has none. Any thread.
+/// Sets the camera of the rendered picture. camera may be NULL, the default: the first camera of the scene, or a camera
+/// in a corner of the room if the scene has none. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_camera(
     transfer: *mut luxfer_transfer,
@@ -366,6 +367,7 @@ pub unsafe extern "C" fn luxfer_transfer_set_strokes(
 /// Sets rectangles of the surface that stay without lamps, for example at ducts and sprinklers. The array zones holds
 /// u0, v0, u1 and v1 of each of count rectangles, in metres from the surface's corner along its axes (luxfer_surface),
 /// with u0 <= u1 and v0 <= v1. The rectangles replace earlier rectangles; zones may be NULL if count is 0. Any thread.
+/// LUXFER_INVALID_ARGUMENT if a number is not finite, or u0 > u1 or v0 > v1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_zones(
     transfer: *mut luxfer_transfer,
@@ -433,8 +435,9 @@ pub unsafe extern "C" fn luxfer_transfer_use_segment(
 }
 
 /// Replaces the result of the stage PLANE or LIGHTS by a mask of the photo's size, for example a mask drawn by hand;
-/// phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, whose values are used as confidences in
-/// [0, 1]. Any thread.
+/// phase, a LUXFER_PHASE_ value, chooses the stage. The mask has 1 channel, whose values are used as confidences in [0,
+/// 1]. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the mask has more channels, or a value outside [0, 1].
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_mask(
     transfer: *mut luxfer_transfer,

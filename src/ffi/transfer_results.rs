@@ -59,7 +59,7 @@ pub type luxfer_transfer_scene = i32;
 pub const LUXFER_SCENE_UNSOLVED: luxfer_transfer_scene = 0;
 /// The scene with the solved emission: the result.
 pub const LUXFER_SCENE_LIT: luxfer_transfer_scene = 1;
-/// The scene LUXFER_SCENE_LIT with white instead of coloured emission of equal luminance, for comparison.
+/// As LUXFER_SCENE_LIT, but the emission is white, at unchanged luminance; for comparison.
 pub const LUXFER_SCENE_WHITE: luxfer_transfer_scene = 2;
 
 /// Time and error of each stage. The error of a stage without a result is NaN.
@@ -108,11 +108,11 @@ pub struct luxfer_transfer_report {
     /// luxfer_photo_metadata if the photo's file states the exposure, else 159, the luminance of white paper in the
     /// 500 lux of an office.
     pub proposed_white: f64,
-    /// Lower bound of proposed_white: white_luminance_low if the photo's file states the exposure, else 32, for the
-    /// 100 lux of a corridor.
+    /// Lower bound of proposed_white in cd/m²: white_luminance_low if the photo's file states the exposure, else 32,
+    /// the luminance of white paper in the 100 lux of a corridor.
     pub proposed_white_low: f64,
-    /// Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318, for 1000
-    /// lux.
+    /// Upper bound of proposed_white in cd/m²: white_luminance_high if the photo's file states the exposure, else 318,
+    /// the luminance of white paper in 1000 lux.
     pub proposed_white_high: f64,
     /// luxfer_render_report.preview_error: estimated error of LUXFER_TRANSFER_RENDER_PREVIEW, divided by the image's
     /// mean. NaN without this image.
@@ -211,7 +211,8 @@ pub struct luxfer_fixture {
     pub flux: f64,
     /// Correlated colour temperature of the light in kelvin; 0 for a lamp that is off.
     pub cct: f64,
-    /// Distance of the light from the blackbody locus in the CIE 1960 diagram, positive for greenish light.
+    /// Signed distance of the light from the blackbody locus in the CIE 1960 diagram: positive for greenish light,
+    /// negative for pinkish light.
     pub duv: f64,
 }
 

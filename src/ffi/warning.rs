@@ -1,9 +1,9 @@
 //! Warnings
 //!
-//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect
-//! with its figure and limit, the place in the photo, and the remedy. Each stage that has warnings has a list of them,
-//! a transfer has the lists of all its stages, and a scene has a list. A list is a copy: it does not change when the
-//! stage is started again. An empty list does not prove that a result is right.
+//! Reasons to doubt the result of a job that has succeeded, or a scene that was loaded. A warning names the defect, a
+//! measure of it (the severity) with the limit that it has passed, the place in the photo, and the remedy. Each stage
+//! that has warnings has a list of them, a transfer has the lists of all its stages, and a scene has a list. A list is
+//! a copy: it does not change when the stage is started again. An empty list does not prove that a result is right.
 
 use super::context::Context;
 use super::emission::luxfer_emission;
@@ -34,7 +34,7 @@ pub struct luxfer_warnings {
 /// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added.
 pub type luxfer_warning_code = i32;
 /// The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the relative
-/// standard deviation of the focal length.
+/// standard deviation of the focal length, or the limit if the limit is larger.
 pub const LUXFER_WARNING_FOCAL_ASSUMED: luxfer_warning_code = 1;
 /// The directions of the room axes are uncertain; the severity is the largest standard deviation in radians.
 pub const LUXFER_WARNING_VIEW_UNCERTAIN: luxfer_warning_code = 2;
@@ -96,8 +96,9 @@ pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 /// that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit. The warning points
 /// to the darkest lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
-/// A texture without any light would differ less from the photo than the synthesised texture does; the severity is
-/// luxfer_emission_report.error. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
+/// A texture without any light would differ less from the photo than the synthesised texture does. The severity is the
+/// error of this texture; luxfer_emission_report.error is smaller if LUXFER_LAW_BEST has then kept the texture of
+/// another law. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or both; for
 /// the lights, positive strokes. The severity is the expected share of wrong pixels.
@@ -147,8 +148,8 @@ pub struct luxfer_warning {
     pub stage: luxfer_stage,
     /// 1 if the warning points to a place, else 0.
     pub has_place: u32,
-    /// The figure that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what it
-    /// measures.
+    /// The number that caused the warning; the comment of the LUXFER_WARNING_ value in the field code says what this
+    /// number measures.
     pub severity: f64,
     /// The limit that the severity has passed: an upper limit, unless the comment of the LUXFER_WARNING_ value says
     /// that the severity is below the limit.
@@ -156,8 +157,8 @@ pub struct luxfer_warning {
     /// The place, x and y in pixels of the photo; for a luxfer_guides or a luxfer_stylize, in pixels of the target or,
     /// where the comment of the LUXFER_WARNING_ value says so, of the artwork. 0 if the warning has no place.
     pub place: [f64; 2],
-    /// The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as the
-    /// luxfer_warnings.
+    /// The defect: an English sentence, which for most warnings states the value of severity, in zero-terminated UTF-8.
+    /// The string lives as long as the luxfer_warnings.
     pub message: *const c_char,
     /// The remedy: an English sentence in zero-terminated UTF-8. The string lives as long as the luxfer_warnings.
     pub advice: *const c_char,

@@ -21,7 +21,7 @@ pub struct Preset {
     pub glare: f64,
     /// Minimum uniformity U0 of the task area: minimum over mean illuminance.
     pub uniformity: f64,
-    /// Minimum colour rendering index.
+    /// Minimum general colour rendering index Ra.
     pub rendering: f64,
     /// Minimum mean illuminance of walls and of the ceiling, in lux, with a uniformity of at least 0.1 (EN 12464-1); 0
     /// if there is no requirement.

@@ -93,7 +93,8 @@ class ExposureSource(IntEnum):
 
     BOTH = 0
     """From the metadata and the pixels, weighted by their errors; from one of them where the other is missing.
-    It is an error if they contradict each other by more than a third of a stop."""
+    If they contradict each other by more than a third of a stop, luxfer_image_merge_exposures returns
+    Status.INVALID_ARGUMENT."""
     METADATA = 1
     """From the exposure time, ISO speed and f-number in the files."""
     PIXELS = 2
@@ -104,9 +105,9 @@ class DepthKind(IntEnum):
     """Quantity that a depth map measures."""
 
     ALONG_Z = 0
-    """Distance along the viewing axis."""
+    """Distance from the camera along the viewing axis (depth z)."""
     ALONG_RAY = 1
-    """Distance along the ray of each pixel."""
+    """Distance from the camera along the ray of each pixel."""
 
 
 class Phase(IntEnum):
@@ -167,7 +168,8 @@ class TextureRole(IntEnum):
     """Metallic-roughness: the green channel multiplies the roughness, the blue channel multiplies the metallic
     value."""
     NORMAL = 2
-    """Normals in tangent space."""
+    """Normals in tangent space, as in glTF 2.0: a channel value c in [0, 1] stands for 2 c - 1, and green
+    points up in the image (OpenGL convention). Load the map as data (ColourSpace.LINEAR), not as sRGB."""
     EMISSION = 3
     """Emission: the texture multiplies the emission; it is looked up without interpolation."""
 
@@ -202,15 +204,16 @@ class VertexAttribute(IntEnum):
     """An attribute of the vertices of a mesh."""
 
     POSITION = 0
-    """Positions, three floats per vertex."""
+    """Positions in metres, three floats per vertex."""
     NORMAL = 1
     """Normals, three floats per vertex."""
     UV_0 = 2
-    """The first set of texture coordinates, two floats per vertex."""
+    """The first set of texture coordinates, two floats per vertex; (0, 0) is the top-left corner of a
+    texture."""
     UV_1 = 3
     """The second set of texture coordinates, two floats per vertex."""
     COLOUR = 4
-    """Colours, four floats per vertex."""
+    """Colours: linear red, green, blue and alpha, four floats per vertex."""
 
 
 class CandidateKind(IntEnum):
@@ -269,8 +272,8 @@ class Lines(IntEnum):
     """Fits segments with sub-pixel end points to regions of similar gradient direction (LSD, Grompone von Gioi
     et al. 2010)."""
     HOUGH = 1
-    """The paper's method (section 5.1): a Hough transform of Canny edges, in which an edge pixel votes only for
-    lines nearly perpendicular to its gradient."""
+    """The method of Lighting Style Transfer (section 5.1): a Hough transform of Canny edges, in which an edge
+    pixel votes only for lines nearly perpendicular to its gradient."""
 
 
 class Search(IntEnum):
@@ -280,8 +283,8 @@ class Search(IntEnum):
     """Finds three orthogonal directions and the focal length together, then refines each direction with the
     lines that run along it."""
     SUCCESSIVE = 1
-    """The paper's method, RANSAC: finds one vanishing point after the other, each from the lines that do not
-    run to an earlier vanishing point."""
+    """The method of Lighting Style Transfer, RANSAC: finds one vanishing point after the other, each from the
+    lines that do not run to an earlier vanishing point."""
 
 
 class Metric(IntEnum):
@@ -291,8 +294,8 @@ class Metric(IntEnum):
     """The distance of the detected segment's end points from the line through its midpoint and the vanishing
     point; finite for vanishing points at infinity."""
     VISIBLE_LINE = 1
-    """The distance of Eq. 2 exactly as the paper prints it. It is measured for the whole part of the line that
-    the photo shows, instead of the detected segment."""
+    """The distance exactly as Eq. 2 of Lighting Style Transfer states it. It is measured for the whole part of
+    the line that the photo shows, instead of the detected segment."""
 
 
 class RectifyImage(IntEnum):
@@ -309,7 +312,7 @@ class FocalSource(IntEnum):
     """The source of a focal length."""
 
     GIVEN = 0
-    """Set by the caller."""
+    """The caller has set the focal length."""
     FROM_VANISHING_POINTS = 1
     """Estimated, mainly from the vanishing points of orthogonal directions."""
     ASSUMED = 2
@@ -323,7 +326,7 @@ class FocalSource(IntEnum):
 
 
 class Normalisation(IntEnum):
-    """How a network expects the photo's colours, which are sRGB in [0, 1]."""
+    """Normalisation of the colours that a network expects as its input."""
 
     BY_SIZE = 0
     """Chosen by the size of the network's input: Normalisation.IMAGENET for 256 x 256, else
@@ -342,9 +345,9 @@ class FeaturesImage(IntEnum):
     CHANNELS = 0
     """The ten features, one channel each: L*, a*, b* (CIELAB, D65); depth; position x, y, z; unit normal x, y,
     z, towards the camera. The depth is (1/near - 1/z) / (1/near - 1/far), where z is the distance along the
-    viewing axis, near is near_plane and far is far_plane. Positions are in the unit of near_plane. The axes are
-    x right, y down, z forward: the axes of the camera or, after luxfer_features_set_view, of the room.
-    luxfer_image_read reads up to four channels at a time."""
+    viewing axis, near is near_plane and far is far_plane. Positions are relative to the camera, in the unit of
+    near_plane. The axes are x right, y down, z forward: the axes of the camera or, after
+    luxfer_features_set_view, of the room. luxfer_image_read reads up to four channels at a time."""
     DEPTH_CONFIDENCE = 1
     """Confidence of the depth of each pixel, in [0, 1]; 1 channel."""
     NETWORK_DEPTH = 2
@@ -403,12 +406,14 @@ class EmissionLaw(IntEnum):
 
     BEST = 0
     """In settings only: the law that predicts the lamps of the photo best. The law of EmissionLaw.CORRELATION
-    is kept unless another law predicts the lamps clearly better. If the texture of a single exemplar then
-    differs from the photo by more than 100 %, the other laws are tried, and the texture that differs least is
-    kept. It still raises WarningCode.NO_PATTERN."""
+    is kept unless another law predicts the lamps clearly better. If EmissionReport.error of the texture then
+    exceeds 1, and there is a single exemplar, the other laws are tried, and the texture with the smallest error
+    is kept. The emission has the warning WarningCode.NO_PATTERN even then."""
     CORRELATION = 1
-    """In settings only: the law that the autocorrelation of the lights suggests. A period counts only if the
-    correlation after a shift by this period is at least the setting min_regularity."""
+    """In settings only: the law follows from the periods in the autocorrelation of the lights:
+    EmissionLaw.LATTICE for two periods, EmissionLaw.ROW for one, and for none EmissionLaw.FREE or, if the
+    exemplar shows few lamps, EmissionLaw.WHOLE. A period counts only if the correlation after a shift by this
+    period is at least the setting min_regularity."""
     LATTICE = 2
     """The lamps form a lattice with two periods."""
     ROW = 3
@@ -431,10 +436,10 @@ class EmissionImage(IntEnum):
     """The mask of the texture: 1 on lamps, else 0; 1 channel."""
     EXEMPLAR_GUIDES = 2
     """The guide channels of the exemplar, by which patches are compared in addition to colour; 3 channels, at
-    the reduced resolution that working_side gives. Channel 0 is the confidence that the pixel shows a light.
-    Channels 1 and 2 are the x and y distances from the pixel to the nearest lit pixel, positive to the right
-    and down, divided by a length L and clamped to [-1, 1]. L is the side of a patch, but at most half the
-    longer period if the lights repeat."""
+    the reduced resolution that working_side gives. Channel 0 is the confidence, in [0, 1], that the pixel shows
+    a light. Channels 1 and 2 are the x and y offsets from the pixel to the nearest lit pixel, positive to the
+    right and down, divided by a length L and clamped to [-1, 1]; both are 1 if no pixel is lit. L is the side
+    of a patch, but at most half the longer period if the lights repeat."""
     GUIDES = 3
     """The guide channels of the texture, at the same reduced resolution: pixels of
     EmissionImage.EXEMPLAR_GUIDES, copied with the patches that give the texture its colours."""
@@ -516,7 +521,7 @@ class Stage(IntEnum):
     STYLIZE = -2
     """No stage of a transfer, but a stylisation or its guides: occurs only in warnings."""
     SCENE = -1
-    """No stage, but a loaded scene: occurs only in warnings."""
+    """No stage, but a luxfer_scene: occurs only in warnings."""
     VIEW = 0
     """Finds lines, vanishing points and the camera of the photo."""
     FEATURES = 1
@@ -584,8 +589,7 @@ class TransferScene(IntEnum):
     LIT = 1
     """The scene with the solved emission: the result."""
     WHITE = 2
-    """The scene TransferScene.LIT with white instead of coloured emission of equal luminance, for
-    comparison."""
+    """As TransferScene.LIT, but the emission is white, at unchanged luminance; for comparison."""
 
 
 class WarningCode(IntEnum):
@@ -593,7 +597,7 @@ class WarningCode(IntEnum):
 
     FOCAL_ASSUMED = 1
     """The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the
-    relative standard deviation of the focal length."""
+    relative standard deviation of the focal length, or the limit if the limit is larger."""
     VIEW_UNCERTAIN = 2
     """The directions of the room axes are uncertain; the severity is the largest standard deviation in
     radians."""
@@ -658,8 +662,9 @@ class WarningCode(IntEnum):
     probability that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit.
     The warning points to the darkest lamp."""
     NO_PATTERN = 23
-    """A texture without any light would differ less from the photo than the synthesised texture does; the
-    severity is EmissionReport.error. This warning replaces WarningCode.PATTERN_UNCERTAIN."""
+    """A texture without any light would differ less from the photo than the synthesised texture does. The
+    severity is the error of this texture; EmissionReport.error is smaller if EmissionLaw.BEST has then kept the
+    texture of another law. This warning replaces WarningCode.PATTERN_UNCERTAIN."""
     PROPOSED = 24
     """A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or
     both; for the lights, positive strokes. The severity is the expected share of wrong pixels."""
@@ -724,8 +729,10 @@ class Group(IntEnum):
     """Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the
     emission has a texture, all lamps form one group."""
     BY_TYPE = 5
-    """Lamps of about equal area form a group. Among punctual lights, each kind (point, spot, directional) forms
-    one group, and luminaires with the same distribution form one group for each distribution."""
+    """Lamps of about equal area form a group: in the order of their areas, a new group begins where the area
+    grows by more than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot,
+    directional) forms one group, and luminaires with the same distribution form one group for each
+    distribution."""
 
 
 class Aim(IntEnum):
@@ -834,9 +841,10 @@ class StylizeVote(IntEnum):
     """How a pixel is computed from overlapping patches."""
 
     PLAIN = 0
-    """The mean of the overlapping patches."""
+    """The mean of the colours that the overlapping patches have at the pixel."""
     WEIGHTED = 1
-    """The mean of the overlapping patches, weighted so that closer matches count more."""
+    """The mean of the colours that the overlapping patches have at the pixel, weighted so that closer matches
+    count more."""
     NEAREST = 2
     """Of the overlapping patches' colours, the colour that is nearest to their mean, so that every colour
     occurs in the artwork."""
@@ -845,9 +853,9 @@ class StylizeVote(IntEnum):
     the artwork meet, each stays whole up to the seam."""
     ADAPTIVE = 4
     """A blend of StylizeVote.PLAIN and StylizeVote.MAJORITY. The proportion varies, so that each place of the
-    picture has as much fine detail as the place of the artwork from which it was painted. The blend thus has
-    whole pixels in rough paint, soft transitions in smooth paint, and edges as sharp as in the artwork.
-    StylizeReport.unblended_share is the share of whole pixels."""
+    picture has as much fine detail as the place of the artwork from which it was painted. The blend thus copies
+    pixels of the artwork unchanged in rough paint, has soft transitions in smooth paint, and has edges as sharp
+    as in the artwork. StylizeReport.unblended_share is the share of unchanged pixels."""
 
 
 class StylizePreset(IntEnum):
@@ -858,9 +866,9 @@ class StylizePreset(IntEnum):
     FAST = 1
     """Nearly the quality of StylizePreset.FULL in half the time."""
     PREVIEW = 2
-    """Half resolution with compressed guides, for feedback while painting."""
+    """Half resolution with compressed guides (see StylizeParams.preview), for feedback while painting."""
     PAPER = 3
-    """The settings of the paper, for comparison."""
+    """The settings of StyLit (Fiser et al. 2016), for comparison."""
 
 
 class GuideRange(IntEnum):
@@ -871,8 +879,8 @@ class GuideRange(IntEnum):
     encoding. If the 99.9th percentile of source and target together exceeds 1, all values are divided by this
     percentile first."""
     DATA = 1
-    """Data, such as normals, object codes and edges. The range of values that source and target have together
-    is scaled to [0, 1]."""
+    """Data, such as normals, object codes and edges. The range of values that all channels of source and target
+    have together is scaled to [0, 1]."""
 
 
 class StylizeImage(IntEnum):
@@ -887,8 +895,8 @@ class StylizeImage(IntEnum):
     place in the exemplar from which the pixel was painted; 1 channel. It is high where nothing in the exemplar
     fits."""
     SOURCES = 2
-    """Position in the artwork from which each pixel was painted, x and y in pixels; -1 where nothing was
-    painted; 2 channels."""
+    """Position in the artwork from which each pixel was painted, x and y in pixels of the artwork, (0.5, 0.5)
+    for the top-left pixel; -1 where nothing was painted; 2 channels."""
 
 
 class Demo(IntEnum):
@@ -982,8 +990,8 @@ class GuidesWith(IntFlag):
     """GuidesWith, to be combined with |."""
 
     NORMALS = 1
-    """Flag of luxfer_stylize_add_guides: add the normals. Without it, they are used if the strokes of the
-    artwork follow the shapes."""
+    """Flag of luxfer_stylize_add_guides: add the normals. Without this flag, the normals are used only if the
+    strokes of the artwork follow the shapes."""
     EDGES = 2
     """Flag of luxfer_stylize_add_guides: add the edges, for shapes finer than the brush strokes."""
     MATERIALS = 4
@@ -1053,15 +1061,15 @@ class ImageView(TypedDict, total=False):
     channels: int
     """Samples per pixel in [1, 4]; default 3."""
     sample: Sample | str | int
-    """Sample; default Sample.F32."""
+    """Storage type of the samples: Sample; default Sample.F32."""
     colour_space: ColourSpace | str | int
-    """ColourSpace; default ColourSpace.LINEAR."""
+    """Encoding of the samples: ColourSpace; default ColourSpace.LINEAR."""
     width: int
     """Width in pixels, in [1, 65536]; default 0: the caller must set it."""
     height: int
     """Height in pixels, in [1, 65536]; default 0: the caller must set it."""
     flags: View | str | int
-    """View, or 0, the default. Unknown flags are an error."""
+    """View, or 0, the default. Unknown flags give Status.INVALID_ARGUMENT."""
     pixel_stride: int
     """Bytes from one pixel to the next, at least the size of a pixel; 0, the default: pixels are packed."""
     row_stride: int
@@ -1081,7 +1089,8 @@ class PhotoMetadata:
     orientation: int
     """EXIF orientation of the stored photo, in [1, 8]; 1 = upright or not recorded. Loading has already applied
     it: 2 mirrors left to right, 3 rotates by 180 degrees, 4 mirrors top to bottom, 6 rotates clockwise by 90
-    degrees, 8 counter-clockwise, 5 and 7 rotate by 90 degrees and mirror."""
+    degrees, 8 counter-clockwise, 5 mirrors about the diagonal from top left to bottom right, 7 about the other
+    diagonal."""
     focal: float
     """Focal length in pixels of the loaded photo; 0 if it is unknown, or if the aspect ratio shows that the
     photo was cropped."""
@@ -1117,12 +1126,12 @@ class MergeParams(TypedDict, total=False):
     reference: int
     """Index of the reference; -1, the default: the photo with the most pixels that are well exposed."""
     keep_moving: int
-    """0, the default: where exposures disagree beyond noise, because something moved, only the exposures are
-    used that agree with the reference, or, where the reference is clipped, with the next shorter exposure that
-    is not clipped; 1: all exposures are averaged."""
+    """What happens where exposures disagree beyond noise, because something moved. 0, the default: only those
+    exposures are averaged that agree with the reference or, where the reference is clipped, with the next
+    shorter exposure that is not clipped. 1: all exposures are averaged."""
     max_shift: float
-    """Largest shift between photos that are neighbours in exposure, as a part of the longer side, in [0, 0.25];
-    default 0.03. 0: the photos are not aligned, as for a camera on a tripod."""
+    """Largest shift between photos that are neighbours in exposure, as a part of the longer side of a photo, in
+    [0, 0.25]; default 0.03. 0: the photos are not aligned, as for a camera on a tripod."""
     saturation: float
     """Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2
     has a high dynamic range and is nowhere clipped."""
@@ -1147,15 +1156,19 @@ class MergeReport:
     """Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is
     1."""
     exposures: tuple[float, ...]
-    """Exposure of each photo relative to the reference."""
+    """Exposure of each photo divided by the exposure of the reference: a ratio of amounts of light, not of
+    stops; above 1 for a photo with more light, 1 for the reference."""
     errors: tuple[float, ...]
-    """Relative standard error of each exposure; 0 if params->exposures states it."""
+    """Relative standard error of each exposure; 0 for exposures that MergeParams.exposures states."""
     stated: tuple[float, ...]
-    """Exposure of each photo relative to the reference according to the metadata; 0 = unknown."""
+    """Exposure of each photo divided by the exposure of the reference, as the metadata state it; 0 =
+    unknown."""
     shift_x: tuple[int, ...]
-    """Column of each photo that shows the part of the view that column 0 of the reference shows."""
+    """Column of each photo that shows the part of the view that column 0 of the reference shows; below 0 if the
+    photo does not show that part."""
     shift_y: tuple[int, ...]
-    """Row of each photo that shows the part of the view that row 0 of the reference shows."""
+    """Row of each photo that shows the part of the view that row 0 of the reference shows; below 0 if the photo
+    does not show that part."""
 
 
 @dataclass(frozen=True)
@@ -1347,8 +1360,8 @@ class DistributionReport:
     variants: int
     """Number of variants of the product in a GLDF container; 1 for all other formats."""
     emitters: int
-    """Number of light emitters in the file, or in the variant, whose distributions are added up; 1 for IES and
-    EULUMDAT."""
+    """Number of emitters whose distributions were added up: those of the file (TM-33) or of the variant that
+    was read (GLDF); 1 for IES and EULUMDAT."""
 
 
 class LightParams(TypedDict, total=False):
@@ -1368,7 +1381,8 @@ class LightParams(TypedDict, total=False):
     """Half angle of the cone in which a spot light has its full intensity, in radians, in [0, outer_angle];
     default 0."""
     outer_angle: float
-    """Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4."""
+    """Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4. From
+    inner_angle to outer_angle, the intensity falls smoothly to 0, as in glTF."""
 
 
 class LuminaireParams(TypedDict, total=False):
@@ -1471,7 +1485,7 @@ class Candidate:
     """A candidate for the ceiling: an object or a material of a scene."""
 
     kind: CandidateKind
-    """CandidateKind."""
+    """Whether the candidate is an object or a material: CandidateKind."""
     index: int
     """Index of the object's first mesh in the scene, or index of the material."""
     area: float
@@ -1500,8 +1514,9 @@ class Candidate:
     """Name of the object or material, in zero-terminated UTF-8. The string lives as long as the
     luxfer_candidates."""
     reason: str
-    """The reason for the score: an English sentence that states area, level_area, height and the shares of the
-    formula in percent, in zero-terminated UTF-8. The string lives as long as the luxfer_candidates."""
+    """The reason for the score: an English sentence that states area, level_area and height, and in percent the
+    factors min(1, level_area / F) and h of the formula of the score; or that no triangle is level. It is zero-
+    terminated UTF-8. The string lives as long as the luxfer_candidates."""
 
 
 class RenderParams(TypedDict, total=False):
@@ -1571,8 +1586,8 @@ class RectifyParams(TypedDict, total=False):
     metric: Metric | str | int
     """Distance of a vanishing point from a line: Metric; default Metric.SEGMENT."""
     hough_band: float
-    """Half-width in radians of the band of directions around a pixel's gradient in which the pixel votes for
-    lines, in [1e-4, pi/2], for Lines.HOUGH; default 0.0436, which is 2.5 degrees."""
+    """For Lines.HOUGH: largest angle in radians between a pixel's gradient and the normal of a line for which
+    the pixel votes, in [1e-4, pi/2]; default 0.0436, which is 2.5 degrees."""
     focal: float
     """Focal length in pixels, in [1e-3, 1e9]; 0, the default: estimated from the lines, and from the photo's
     metadata if it has any."""
@@ -1593,8 +1608,9 @@ class RectifyParams(TypedDict, total=False):
     distortion: float
     """Radial distortion of the lens to undo: the outward shift of the corners of the photo, as a share of their
     distance from its centre, in [-1, 0.2]; below 0 for barrel distortion, which wide-angle lenses have. NaN,
-    the default: the distortion is measured, and undone if it is barrel distortion from 0.02 to 0.1, at least
-    two standard deviations, and the lines then meet better in vanishing points. 0: no distortion is undone."""
+    the default: the distortion is measured. It is undone if it lies between -0.1 and -0.02, if its absolute
+    value is at least two standard deviations, and if the lines meet better in vanishing points without it. 0:
+    no distortion is undone."""
 
 
 @dataclass(frozen=True)
@@ -1618,7 +1634,7 @@ class RectifyReport:
     principal: tuple[float, float]
     """Principal point in pixels."""
     axes: tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
-    """Room axes as unit vectors in camera space."""
+    """Room axes as unit vectors in camera space: axis 0 points right, axis 1 down, axis 2 forward."""
     is_unwarped: int
     """1 if the plane has been unwarped; 0 if not: the fields from to_photo to aspect_confidence are then 0."""
     to_photo: tuple[float, ...]
@@ -1649,8 +1665,8 @@ class RectifyReport:
     squareness_errors: tuple[float, float, float]
     """Standard deviations of the field squareness; NaN where squareness is NaN."""
     undone: float
-    """The distortion that was undone: the field distortion of RectifyParams if it is set, or else the measured
-    distortion or 0; 0 if no distortion was undone."""
+    """The distortion that was undone, in the unit of the field distortion: the one that
+    RectifyParams.distortion sets, else the measured one; 0 if none was undone."""
 
 
 class FeaturesParams(TypedDict, total=False):
@@ -1704,8 +1720,9 @@ class SegmentParams(TypedDict, total=False):
     seed: int
     """Seed of the samples that are drawn; default 1."""
     refine_tolerance: float
-    """Difference between neighbouring pixels in the first three channels below which the refinement treats them
-    as one surface. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8."""
+    """Smallest contrast that the refinement follows. Where the standard deviation of the first three channels
+    within a window is below this value, the refinement smooths the mask; where it is above, the mask follows
+    the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8."""
     subject: Subject | str | int
     """Kind of object that the positive strokes mark: Subject; default Subject.AUTO. If the subject is lamps,
     the settings above have no effect."""
@@ -1720,7 +1737,7 @@ class SegmentReport:
     error: float
     """Expected share of wrong pixels, in [0, 1]. For a surface, it is estimated on strokes held out of the
     training. For lamps, it is the area of the lamps, times the share of wrong pixels that is usual in such
-    lamps."""
+    lamps, divided by the area of the mask of luxfer_segment_set_region or, without this mask, of the photo."""
     negative_samples: int
     """Number of samples of the negative class."""
     positive_samples: int
@@ -1758,8 +1775,9 @@ class EmissionParams(TypedDict, total=False):
     """1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps."""
     offset: Sequence[float]
     """Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6,
-    1e6]; default 0. With EmissionLaw.FREE, the pattern has no fixed place: the offset must be 0, unless the
-    texture is tileable and no light is copied patch by patch. It then shifts all lamps."""
+    1e6]; default 0. With EmissionLaw.FREE, the offset shifts all lamps if the texture is tileable and no light
+    is copied patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or
+    the job ends with Status.INVALID_ARGUMENT; with whole_lamps = 0 it has no effect."""
     clip_level: float
     """A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The
     clipped core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with
@@ -1769,15 +1787,16 @@ class EmissionParams(TypedDict, total=False):
     tileable: int
     """1: the texture can be repeated without seams. Lamps that cross an edge of the texture continue at the
     opposite edge. Lights with periods are stretched so that a whole number of periods fits; the width and the
-    height of the pattern change by less than half a period. Needs whole_lamps. Default 0."""
+    height of the pattern change by less than half a period. Needs whole_lamps = 1, or else the job ends with
+    Status.INVALID_ARGUMENT. Default 0."""
     centred: int
     """1: the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps,
     lies at the texture's centre, whichever lets the border cut the fewest lamps. The field offset shifts the
     pattern from there. Default 0. No effect with EmissionLaw.FREE."""
     candidates: int
     """For EmissionLaw.FREE: number of patches, drawn at random from the exemplar, that are compared for each
-    patch of the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the patches already
-    placed beside it are compared in addition."""
+    patch of the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the neighbours
+    already placed in the texture are compared in addition."""
     law: EmissionLaw | str | int
     """The law: the rule by which the texture continues the lights of the exemplar, EmissionLaw other than
     EmissionLaw.COPY; default EmissionLaw.BEST."""
@@ -1844,7 +1863,7 @@ class Luminaire:
     corners: int
     """Number of corners of the outline."""
     centre: tuple[float, float]
-    """Centre in texels, x and y."""
+    """Centre in texels, x to the right and y down; the texture's top-left corner is (0, 0)."""
     size: tuple[float, float]
     """Extents of the lamp along its two principal axes, in texels, the longer one first."""
     orientation: float
@@ -1856,8 +1875,8 @@ class Luminaire:
     colour: tuple[float, float, float]
     """Mean linear RGB colour, where 1 is the photo's white."""
     kind: int
-    """Number of the lamp's kind, from 1. Lamps of about equal size and shape are of one kind; kind 1 has the
-    most lamps. 0 if the border of the texture cuts the lamp."""
+    """Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %,
+    are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp."""
 
 
 class RelightParams(TypedDict, total=False):
@@ -1893,7 +1912,7 @@ class RelightReport:
     background: tuple[float, float, float]
     """Mean radiance of the target from all other light, in cd/m² per channel."""
     outcome: tuple[Outcome, Outcome, Outcome]
-    """Outcome of each channel."""
+    """Whether each channel meets its target: Outcome."""
     error: float
     """The largest relative half-width (half_width / scale) among the channels that meet their target; 0 without
     such channels."""
@@ -1914,13 +1933,13 @@ class PatternParams(TypedDict, total=False):
     [1e-6, 1e6]; default 1. Other values of scale do not use it."""
     texel_size: float
     """Side of a texel in metres, in [0, 1e6]. 0, the default: the size of an unwarped pixel on the surface, or
-    a larger size if the texture would otherwise exceed max_texels of TransferParams. A size with which the
-    texture exceeds max_texels is an error."""
+    a larger size if the texture would otherwise exceed max_texels of TransferParams. With a size at which the
+    texture exceeds max_texels, the job ends with Status.INVALID_ARGUMENT."""
     rotation: float
     """Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
     offset: Sequence[float]
     """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With EmissionLaw.FREE,
-    lamps have no fixed places: a shift other than 0 is then an error unless the texture is tileable."""
+    the pattern has no fixed place: the conditions of EmissionParams.offset then apply."""
     margin: float
     """Minimum distance in metres of lamps from the edge of the surface and from the zones of
     luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as
@@ -2005,11 +2024,11 @@ class TransferReport:
     """Value proposed for TransferParams.white_luminance in cd/m²: the white_luminance of PhotoMetadata if the
     photo's file states the exposure, else 159, the luminance of white paper in the 500 lux of an office."""
     proposed_white_low: float
-    """Lower bound of proposed_white: white_luminance_low if the photo's file states the exposure, else 32, for
-    the 100 lux of a corridor."""
+    """Lower bound of proposed_white in cd/m²: white_luminance_low if the photo's file states the exposure, else
+    32, the luminance of white paper in the 100 lux of a corridor."""
     proposed_white_high: float
-    """Upper bound of proposed_white: white_luminance_high if the photo's file states the exposure, else 318,
-    for 1000 lux."""
+    """Upper bound of proposed_white in cd/m²: white_luminance_high if the photo's file states the exposure,
+    else 318, the luminance of white paper in 1000 lux."""
     preview_error: float
     """RenderReport.preview_error: estimated error of TransferImage.RENDER_PREVIEW, divided by the image's mean.
     NaN without this image."""
@@ -2038,7 +2057,8 @@ class Fixture:
     cct: float
     """Correlated colour temperature of the light in kelvin; 0 for a lamp that is off."""
     duv: float
-    """Distance of the light from the blackbody locus in the CIE 1960 diagram, positive for greenish light."""
+    """Signed distance of the light from the blackbody locus in the CIE 1960 diagram: positive for greenish
+    light, negative for pinkish light."""
 
 
 @dataclass(frozen=True)
@@ -2054,8 +2074,8 @@ class Warning:
     has_place: int
     """1 if the warning points to a place, else 0."""
     severity: float
-    """The figure that caused the warning; the comment of the WarningCode in the field code says what it
-    measures."""
+    """The number that caused the warning; the comment of the WarningCode in the field code says what this
+    number measures."""
     limit: float
     """The limit that the severity has passed: an upper limit, unless the comment of the WarningCode says that
     the severity is below the limit."""
@@ -2063,8 +2083,8 @@ class Warning:
     """The place, x and y in pixels of the photo; for a luxfer_guides or a luxfer_stylize, in pixels of the
     target or, where the comment of the WarningCode says so, of the artwork. 0 if the warning has no place."""
     message: str
-    """The defect: an English sentence with the figure, in zero-terminated UTF-8. The string lives as long as
-    the luxfer_warnings."""
+    """The defect: an English sentence, which for most warnings states the value of severity, in zero-terminated
+    UTF-8. The string lives as long as the luxfer_warnings."""
     advice: str
     """The remedy: an English sentence in zero-terminated UTF-8. The string lives as long as the
     luxfer_warnings."""
@@ -2129,8 +2149,9 @@ class LampsParams(TypedDict, total=False):
     max_scale: float
     """Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity."""
     regularisation: float
-    """Weight of the regularisation, which pulls all powers towards one value, in [1e-9, 1e3]; default 1e-6.
-    With a small weight the goals are met, with a large weight the powers are nearly equal."""
+    """Weight of the regularisation, which pulls all powers towards the equal power that meets the goals best,
+    in [1e-9, 1e3]; default 1e-6. With a small weight the goals are met, with a large weight the powers are
+    nearly equal."""
     tolerance: float
     """Tolerance of the goals, in [1e-6, 1]; default 0.01. A goal counts as met if its light misses the target
     by at most tolerance times the target's brightest channel, plus the half-width of the 95 % confidence
@@ -2183,7 +2204,7 @@ class LampsGoal:
     """The light that the surface or grid of one goal receives with the powers found."""
 
     outcome: tuple[Outcome, Outcome, Outcome]
-    """Outcome of each channel."""
+    """Whether each channel meets its target: Outcome."""
     target: tuple[float, float, float]
     """Target: the mean radiance that the goal's surface should have, in cd/m² per channel. For a grid, it is
     the wanted illuminance divided by pi."""
@@ -2212,7 +2233,7 @@ class LampsResponse:
     mean: tuple[float, float, float]
     """Mean radiance of the goal's surface from the lamp at scale 1, in cd/m² per channel."""
     half_width: tuple[float, float, float]
-    """Half-widths of the 95 % confidence intervals of `mean`, per channel, in cd/m²."""
+    """Half-widths of the 95 % confidence intervals of the field mean, per channel, in cd/m²."""
 
 
 class ImportanceParams(TypedDict, total=False):
@@ -2294,7 +2315,7 @@ class Placement:
     scale: tuple[float, float]
     """Number of repetitions of the texture along u and v of the surface."""
     rotation: float
-    """Rotation of the placement in radians."""
+    """Rotation of the placement in radians, from u towards v."""
     response: tuple[float, float, float]
     """Mean radiance of the target from the texture alone, in cd/m² per channel."""
     half_width: tuple[float, float, float]
@@ -2407,7 +2428,7 @@ class FalseColourParams(TypedDict, total=False):
     """Settings of a false colour image."""
 
     scale: Scale | str | int
-    """Scale; default Scale.LINEAR."""
+    """Scale that maps values to colours: Scale; default Scale.LINEAR."""
     unit: Unit | str | int
     """Quantity of the values, whose unit is written above the bar: Unit; default Unit.LUMINANCE."""
     bar: int
@@ -2464,7 +2485,7 @@ class Preset:
     uniformity: float
     """Minimum uniformity U0 (minimum / mean illuminance) of the task area."""
     rendering: float
-    """Minimum colour rendering index."""
+    """Minimum general colour rendering index Ra."""
     walls: float
     """Minimum mean illuminance of the walls, in lux; 0 if there is no requirement."""
     ceiling: float
@@ -2496,14 +2517,16 @@ class PendantsParams(TypedDict, total=False):
     because the height is unknown, the unit of all lengths, known_length included, is the true height instead of
     the metre."""
     suspension_error: float
-    """Standard deviation of each coordinate of a suspension in pixels, in [0.05, 100]; default 1."""
+    """Standard deviation in pixels of the x and of the y of each point in the array suspensions of
+    luxfer_pendants_find, in [0.05, 100]; default 1."""
     focal: float
     """Focal length of the camera in pixels; required, and > 0, if no rectification is given; default 0. Not
-    used with a rectification. Photo and masks must then be free of lens distortion."""
+    used with a rectification. Without a rectification, the photo and the mask must be free of lens
+    distortion."""
     focal_error: float
     """Standard deviation of the focal length in pixels, in [0, focal / 2]; default 0. With a rectification, 0
-    stands for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller. It
-    is 0 only if the rectification was given the focal length."""
+    stands for the standard deviation that the rectification has estimated, or focal / 2 if that is smaller.
+    This estimate is 0 only if the caller gave the rectification the focal length."""
     axes_error: float
     """Standard deviation in radians of the tilt of the vertical axis about each horizontal axis, in [0, 0.5];
     default 0. Not used with a rectification, which has its own value."""
@@ -2591,7 +2614,7 @@ class StylizeParams(TypedDict, total=False):
     """Weight of all guides together, relative to the weight of all colour channels of the artwork together, in
     [0, 1e6]; default 2."""
     coarse_guides: float
-    """Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; the paper has 1. With a
+    """Factor for guide_weight on all levels but the finest, in [0, 1000]; default 4; StyLit has 1. With a
     larger factor the picture follows the guides more closely, with smaller connected pieces of the artwork."""
     levels: int
     """Maximum number of resolution levels, each half as wide and high as the next finer one, in [1, 16];
@@ -2600,24 +2623,24 @@ class StylizeParams(TypedDict, total=False):
     """Rounds on the second finest level, in [1, 100]; default 6. A round is an EM iteration: matching, then
     voting."""
     coarse_iterations: int
-    """Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; the paper
-    has 6."""
+    """Rounds (EM iterations) on each level coarser than the second finest, in [1, 100]; default 24; StyLit has
+    6."""
     finest_iterations: int
     """Rounds (EM iterations) on the finest level, in [1, 100]; default 1."""
     polish: int
-    """Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; the paper has 0. In these
-    rounds each target patch takes its nearest match, without the error budget."""
+    """Additional rounds (EM iterations) on the finest level, in [0, 100]; default 3; StyLit has 0. In these
+    rounds each target patch takes its nearest exemplar patch, without the error budget."""
     search_iterations: int
     """Number of PatchMatch iterations in one search for nearest patches, in [1, 100]; default 1."""
     coverage: float
-    """Share of the target that is matched under the error budget before the rest is matched without it, in [0,
-    1]; default 0.9."""
+    """The passes under the error budget end once they have matched this share of the target patches, in [0, 1];
+    default 0.9. Each remaining target patch then takes its nearest exemplar patch."""
     passes: int
     """Maximum number of matching passes under the error budget in one round (EM iteration), in [1, 1000];
     default 6."""
     settle: int
-    """Number of iterations after each matching, in [0, 100]; default 2; the paper has 0. In such an iteration,
-    a target patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer
+    """Number of iterations after each matching, in [0, 100]; default 2; StyLit has 0. In such an iteration, a
+    target patch may take the exemplar patch that continues the match of its neighbour, which leaves fewer
     seams."""
     seam: float
     """Cost of a seam, as a share of the mean error of a match, in [0, 100]; default 0.2. A seam lies between
@@ -2630,8 +2653,8 @@ class StylizeParams(TypedDict, total=False):
     """How a pixel of the final picture, after the last round, is computed from overlapping patches: a
     StylizeVote; default StylizeVote.ADAPTIVE."""
     preview: int
-    """1: work at half resolution with compressed guides, which makes the picture half as wide and high; 0, the
-    default: full resolution."""
+    """1: work at half resolution, which makes the picture half as wide and high, with compressed guides: the
+    few principal components of all guides instead of the guides themselves. 0, the default: full resolution."""
     keep_for_update: int
     """1: keep the data that luxfer_stylize_update needs, about as much memory as all guides; 0, the default:
     free it."""
@@ -2676,8 +2699,9 @@ class StylizeReport:
     broken_target: int
     """Number of target pixels with a guide value that is not finite and was taken as 0."""
     unblended_share: float
-    """Share of the painted pixels that are whole pixels of the artwork, in [0, 1]; the others are blends. With
-    StylizeVote.ADAPTIVE it is higher for rough paint than for smooth paint. An update does not change it."""
+    """Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the others are blends
+    of several artwork pixels. StylizeVote.ADAPTIVE gives rough paint a larger share than smooth paint.
+    luxfer_stylize_update leaves this value as the last full run has set it."""
     normals_weight: float
     """Weight of the normals as a guide, where each guide of light has 1; 0: the normals are not used. Unless
     the caller has given this weight, it is above 0 only if the strokes of the artwork follow the shapes; see
