@@ -97,7 +97,8 @@ luxfer_status luxfer_scene_create(luxfer_context *context, luxfer_scene **scene)
  * LUXFER_INVALID_ARGUMENT for another ending, or if the scene is not valid; LUXFER_UNSUPPORTED if a texture transform
  * has shear, or the file would exceed 4 GiB; LUXFER_IO if the file cannot be written.
  */
-luxfer_status luxfer_scene_export(luxfer_scene *scene, const char *path);
+luxfer_status luxfer_scene_export(luxfer_scene *scene,
+                                  const char *path);
 
 /**
  * Writes a scene as GLB, as luxfer_scene_export does, through write, a function of the caller, which receives the

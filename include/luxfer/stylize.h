@@ -145,6 +145,12 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
  * forced. The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
  * ================================================================================================================== */
 
+/**
+ * A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset, that is, LUXFER_STYLIZE_FULL,
+ * LUXFER_STYLIZE_FAST, LUXFER_STYLIZE_PREVIEW or LUXFER_STYLIZE_PAPER.
+ */
+typedef int32_t luxfer_stylize_preset;
+
 /** The search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value. */
 typedef int32_t luxfer_stylize_search;
 
@@ -252,12 +258,6 @@ typedef struct luxfer_stylize_params {
 static inline luxfer_status luxfer_stylize_params_init(luxfer_stylize_params *place, size_t size) {
     return luxfer_init(LUXFER_STRUCT_STYLIZE_PARAMS, place, size);
 }
-
-/**
- * A preset of the settings, which trades quality for speed: a LUXFER_STYLIZE_ preset, that is, LUXFER_STYLIZE_FULL,
- * LUXFER_STYLIZE_FAST, LUXFER_STYLIZE_PREVIEW or LUXFER_STYLIZE_PAPER.
- */
-typedef int32_t luxfer_stylize_preset;
 
 /** Full quality, the default. */
 #define LUXFER_STYLIZE_FULL 0

@@ -828,6 +828,19 @@ class GuidesImage(IntEnum):
     surface, which reflects it to the camera (LS+DE)."""
 
 
+class StylizePreset(IntEnum):
+    """A preset of the settings, which trades quality for speed."""
+
+    FULL = 0
+    """Full quality, the default."""
+    FAST = 1
+    """Nearly the quality of StylizePreset.FULL in half the time."""
+    PREVIEW = 2
+    """Half resolution with compressed guides (see StylizeParams.preview), for feedback while painting."""
+    PAPER = 3
+    """The settings of StyLit (Fiser et al. 2016), for comparison."""
+
+
 class StylizeSearch(IntEnum):
     """The search for nearest patches."""
 
@@ -856,19 +869,6 @@ class StylizeVote(IntEnum):
     picture has as much fine detail as the place of the artwork from which it was painted. The blend thus copies
     pixels of the artwork unchanged in rough paint, has soft transitions in smooth paint, and has edges as sharp
     as in the artwork. StylizeReport.unblended_share is the share of unchanged pixels."""
-
-
-class StylizePreset(IntEnum):
-    """A preset of the settings, which trades quality for speed."""
-
-    FULL = 0
-    """Full quality, the default."""
-    FAST = 1
-    """Nearly the quality of StylizePreset.FULL in half the time."""
-    PREVIEW = 2
-    """Half resolution with compressed guides (see StylizeParams.preview), for feedback while painting."""
-    PAPER = 3
-    """The settings of StyLit (Fiser et al. 2016), for comparison."""
 
 
 class GuideRange(IntEnum):

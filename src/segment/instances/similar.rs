@@ -233,8 +233,9 @@ impl Search<'_> {
         Ok(similar)
     }
 
-    /// Adds the regions that meet the limits [`IN_LINE`] and continue a row of lamps: they are as wide across the row as
-    /// a lamp under a stroke or a lamp found before. Regions off the plane are added to `beyond`.
+    /// If the lamps are proposed, adds the regions that meet the limits [`IN_LINE`] and continue a row of lamps: they
+    /// are as wide across the row as a lamp that was found before, and have its shape unless the border cuts that lamp.
+    /// Regions off the plane are added to `beyond`.
     fn add_in_line(
         &self,
         model: &LampLimits,
