@@ -64,7 +64,7 @@ impl Site {
     }
 }
 
-/// The sites of a lattice or a row.
+/// The sites of a lattice or a row: the places, one per period, at which the same lamps are expected.
 pub struct Sites {
     pub list: Vec<Site>,
     /// Maps unwarped pixels to lattice cells. A row uses only the first coordinate, along its period.

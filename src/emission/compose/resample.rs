@@ -23,8 +23,8 @@ use glam::{DVec2, Vec3};
 /// [convention]
 const MAX_POINTS: f64 = 32.0;
 
-/// A smaller copy of the photo is read if the shorter side of the quadrangle has at least this number of photo pixels.
-/// [bench emission:recovery]
+/// In the photo, a square of the unwarped image is a quadrangle. If its shorter side is at least this number of photo
+/// pixels long, a smaller copy of the photo is read instead of the photo. [bench emission:recovery]
 const MIN_PIXELS: f64 = 8.0;
 
 /// The photo and its smaller copies, each with half the width and height of the one before.

@@ -44,9 +44,11 @@ impl MeasuredLamp {
         Self { component, centre: lamp.centre, size, weight, blur }
     }
 
-    /// Groups lamps that `is_like` calls equal. Each group lists the lamps with most photo pixels first.
+    /// Groups lamps of equal size: `is_like` decides whether two sizes are equal. The lamps of each group are returned in
+    /// the order of decreasing weight.
     pub fn kinds(lamps: &[Self], is_like: fn(&Self, &Self) -> bool) -> Vec<Vec<Self>> {
-        // Process lamps in the order of increasing blur, so that each lamp is compared with lamps of similar blur.
+        // Process lamps in the order of increasing blur, so that each lamp is compared with lamps of similar blur. A
+        // lamp joins the group whose last lamp is nearest in size.
         let mut order = lamps.to_vec();
         order.sort_by(|a, b| a.blur.length().total_cmp(&b.blur.length()));
         let mut kinds: Vec<Vec<Self>> = Vec::new();

@@ -23,7 +23,7 @@ const MAX_DIFFERENCE: f64 = 0.5;
 const MIN_SHARP_SHARE: f64 = 0.4;
 
 /// A lamp is obstructed if its dark share ([`Exemplar::dark_share`]) exceeds the smallest dark share of its kind by
-/// more than this value. Values from 0.02 to 0.1 change which lamps are shown, but the lattice of no photo.
+/// more than this value. Between 0.02 and 0.1, the value changes which lamps the textures show, but not where.
 /// [bench photos:real]
 const MAX_OBSTRUCTED: f64 = 0.05;
 
