@@ -25,8 +25,8 @@
 //!   share of the true lamps at least 4 pixels wide of which half the pixels lie in the mask.
 //! - The outline of a lamp that the corpus lists by hand is drawn where its luminance is half way between its
 //!   surroundings and its own (`photos/outline.rs`). Where the corpus joins several lamps in one outline, the lamps are
-//!   drawn anew (`photos/redrawn.txt`). A lamp that was measured in a ceiling seen straight on has the
-//!   median size of the lamps of that ceiling.
+//!   drawn anew (`photos/redrawn.txt`). A lamp that was measured in a ceiling seen straight on has the median size of
+//!   the lamps of that ceiling.
 //! - The *texture* is compared with the true lamps in their plane if the camera is known. Both are measured in units
 //!   of the camera's distance from the plane, so that errors of the focal length and of the unwarping count too. The
 //!   statistics are the median area of whole lamps, the median aspect ratio, the median distance to the nearest lamp,

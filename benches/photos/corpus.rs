@@ -134,8 +134,9 @@ fn truth(name: &str, record: &Value, photo: &Image) -> Truth {
     let unlisted = unlisted(name, [width, height]);
     let to_photo = matrix(&record["H_image_from_ceiling"]);
     let layout = to_photo.and_then(|map| {
-        let measured = measured_layout(record, &measured).or_else(|| listed_layout(&listed));
-        measured.or_else(|| shown_layout(&parts, &map, photo))
+        let by_list = || if is_redrawn { None } else { listed_layout(&listed) };
+        let known = measured_layout(record, &measured).or_else(by_list);
+        known.or_else(|| shown_layout(&parts, &map, photo))
     });
     lamps.retain(|lamp| lamp.polygons.iter().any(|polygon| thickness(polygon) >= MIN_THICKNESS));
     Truth {
@@ -182,12 +183,16 @@ fn thickness(polygon: &[DVec2]) -> f64 {
 fn numbers_of(list: &str, name: &str) -> Vec<Vec<f64>> {
     let lines = list.lines().map(str::split_whitespace);
     let of_name = lines.filter_map(|mut words| (words.next() == Some(name)).then_some(words));
-    of_name.map(|words| words.filter_map(|word| word.parse().ok()).collect()).collect()
+    let number = |word: &str| word.parse().unwrap_or_else(|_| panic!("{name}: {word} is not a number"));
+    of_name.map(|words| words.map(number).collect()).collect()
 }
 
 /// The lamps of a photo that are drawn anew (`redrawn.txt`); empty for most photos.
 fn redrawn(name: &str) -> Vec<Lamp> {
-    let corners = |numbers: &Vec<f64>| numbers.chunks_exact(2).map(|c| DVec2::new(c[0], c[1])).collect();
+    let corners = |numbers: &Vec<f64>| {
+        assert!(numbers.len() % 2 == 0, "{name}: a corner of redrawn.txt has no y");
+        numbers.chunks_exact(2).map(|c| DVec2::new(c[0], c[1])).collect()
+    };
     let polygons: Vec<Vec<DVec2>> = numbers_of(include_str!("redrawn.txt"), name).iter().map(corners).collect();
     let lamp = |polygon: Vec<DVec2>| {
         let centre = polygon.iter().sum::<DVec2>() / polygon.len() as f64;

@@ -83,6 +83,7 @@ const MARGIN: f64 = 1.05;
 
 /// A face of the room is common to a set of pixels if at least this fraction of them lies on it. [convention]
 const SHARED: f64 = 0.9;
+
 impl Layout {
     /// Returns the face on which most of the given pixels lie.
     pub(super) fn face_of(&self, perspective: &Perspective, pixels: impl Iterator<Item = DVec2>) -> Face {

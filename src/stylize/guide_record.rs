@@ -132,7 +132,9 @@ fn means(row: &mut [u8], target: &Image, channels: &[usize], y: usize, patch: us
         let last = x + patch - 1;
         columns[last % patch] = column(last);
         for (i, out) in out.iter_mut().enumerate() {
-            let sum: f32 = columns[..patch].iter().map(|sums| sums[i]).sum();
+            // Add the columns from left to right, so that equal patches have equal sums wherever they lie.
+            let from_left = (0..patch).map(|k| columns[(x + k) % patch][i]);
+            let sum: f32 = from_left.sum();
             *out = stored(sum * scale);
         }
     }

@@ -135,7 +135,7 @@ impl Transfer {
             mask: &lights.mask,
             beyond: &beyond,
             is_uncertain: plane.is_proposed || self.results.view_by_lines.is_some(),
-            may_leave_out: is_proposed,
+            may_leave_out: is_proposed || lights.is_proposed,
         };
         let Some((layout, regions)) = layout.enlarged_for(&view.perspective, &lamps) else { return Ok(false) };
         self.results.beyond = regions.into_iter().map(|k| lights.beyond[k].clone()).collect();

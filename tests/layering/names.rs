@@ -40,13 +40,15 @@ pub fn listed(text: &str, heading: &str) -> Vec<String> {
     rows.map(|(name, _)| name.to_string()).filter(|name| name != "name").collect()
 }
 
-/// The name of the type that a line defines. Types within items, such as `type Item` in an `impl`, do not count.
+/// The name of the type that a line defines. Types within items, such as `type Item` in an `impl` or a `struct` in a
+/// module inside the file, do not count.
 fn defined(line: &str) -> Option<&str> {
     let public = line.strip_prefix("pub").map(|rest| match rest.strip_prefix('(') {
         Some(rest) => rest.split_once(')').map_or(rest, |(_, rest)| rest).trim_start(),
         None => rest.trim_start(),
     });
-    let (kind, rest) = public.unwrap_or(line).split_once(' ')?;
+    let item = public.unwrap_or(line);
+    let (kind, rest) = item.strip_prefix("unsafe ").unwrap_or(item).split_once(' ')?;
     let is_type = ["struct", "enum", "trait", "type", "union"].contains(&kind);
     is_type.then(|| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or(rest))
 }

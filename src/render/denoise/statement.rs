@@ -10,9 +10,9 @@
 //! - Both halves take the same pass, whose estimated error is the least of several noisy ones.
 //! - Light that comes by rare paths is usually missing from both halves.
 //!
-//! The filtered halves then agree more than independent halves would. The missing error is taken
-//! as a share of the variance that the filter removes (docs/notes/filter.md has the measurements), and the statement
-//! adds this share ([`SHARED`]) to the variance.
+//! The filtered halves then agree more than independent halves would. The missing error is taken as a share of the
+//! variance that the filter removes (docs/notes/filter.md has the measurements), and the statement adds this share
+//! ([`SHARED`]) to the variance.
 
 use super::light::Light;
 use super::planes::{Classes, Planes};

@@ -157,13 +157,16 @@ impl OnFace {
         })
     }
 
-    /// Centres and extents of two nodes, across a row along v and across a row along u.
+    /// Centres and extents of two nodes, across a row along v and across a row along u. A strip of width w has the
+    /// variance w² / 12. The variance within a pixel is a twelfth of its area; take the mean over the pixels, weighted by
+    /// area.
     fn across(&self, a: usize, b: usize) -> [[(f64, f64); 2]; 2] {
         [(&self.u, &self.uu), (&self.v, &self.vv)].map(|(first, second)| {
             [a, b].map(|node| {
                 let area = self.area[node].max(f64::MIN_POSITIVE);
                 let mean = first[node] / area;
-                (mean, (12.0 * (second[node] / area - mean * mean)).max(0.0).sqrt())
+                let variance = (second[node] / area - mean * mean).max(0.0) + self.squares[node] / area / 12.0;
+                (mean, (12.0 * variance).sqrt())
             })
         })
     }

@@ -111,8 +111,8 @@ const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0, ar
 /// Limits for a region that continues a row of lamps of equal width. Louvres make lamps dimmer the flatter one looks at
 /// them, so the far lamps of a row may be much darker than the near ones. [bench photos:nostrokes]
 const IN_LINE: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 30.0, area: 0.0, dimmer: 30.0 };
-/// Maximum difference of the widths of two such lamps, measured across the row, as a share of the larger width.
-/// [bench photos:nostrokes]
+/// Maximum difference of the widths of two such lamps, and maximum distance between their centres, both measured across
+/// the row, as a share of the larger width. [bench photos:nostrokes]
 const EQUAL_WIDTH: f64 = 0.15;
 
 /// Variance, in square pixels, of the blur of the photo plus the blur before the gradient is computed.
@@ -137,8 +137,8 @@ pub struct Similar {
     pub found: Vec<u32>,
     /// Regions on the plane whose likeness to the lamps under the strokes is just below the minimum for a lamp.
     pub doubtful: Vec<u32>,
-    /// Regions off the plane that look like lamps and lie in a row with lamps of the same size and shape: they suggest
-    /// that the plane continues there.
+    /// Regions off the plane that look like lamps and lie in a row with lamps of the same size and shape, or of the same
+    /// width if the border of the photo cuts those lamps. They suggest that the plane continues there.
     pub beyond: Vec<u32>,
 }
 
@@ -235,7 +235,8 @@ impl Search<'_> {
 
     /// If the lamps are proposed, adds the regions that meet the limits [`IN_LINE`] and continue a row of lamps: they
     /// are as wide across the row as a lamp that was found before, and have its shape unless the border cuts that lamp.
-    /// Regions off the plane are added to `beyond`.
+    /// Doubtful regions are tried first. Regions off the plane are added to `beyond`. Regions that the border cuts are
+    /// left out.
     fn add_in_line(
         &self,
         model: &LampLimits,
@@ -245,29 +246,55 @@ impl Search<'_> {
         similar: &mut Similar,
         job: Job,
     ) -> Result<()> {
-        let Some(surface) = self.regions.surface.as_ref().filter(|_| self.is_proposed) else { return Ok(()) };
+        if !self.is_proposed {
+            return Ok(());
+        }
+        let doubtful = std::mem::take(&mut similar.doubtful);
+        for node in doubtful {
+            let lamps = painted.iter().chain(&similar.found);
+            match self.place_in_line(model, lamps, taken, node)? {
+                Some(true) => similar.found.push(node),
+                _ => similar.doubtful.push(node),
+            }
+        }
         let candidates = self.candidates(model, painted, chosen, IN_LINE)?;
-        for (k, &(node, likeness)) in candidates.iter().enumerate() {
+        for (k, &(node, _)) in candidates.iter().enumerate() {
             if k % 256 == 0 {
                 job.check()?;
             }
-            let mut lamps = painted.iter().chain(&similar.found);
-            let has_shape = |lamp: u32| {
-                self.is_cut(lamp) || self.lamps_of_equal_shape(std::iter::once(&lamp), node as usize).next().is_some()
-            };
-            let is_in_line =
-                |&lamp: &u32| surface.are_in_line(node as usize, lamp as usize, EQUAL_WIDTH) && has_shape(lamp);
-            if likeness < 1.0 || !chosen.admits(node) || self.is_cut(node) || !lamps.any(is_in_line) {
+            if !chosen.admits(node) {
                 continue;
             }
-            let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else { continue };
-            if self.ring_likeness(model, node as usize, &ring) >= IN_LINE.contrast {
-                let is_on_plane = ring.on_plane >= ON_PLANE || self.is_on_face(node as usize);
-                if is_on_plane { &mut similar.found } else { &mut similar.beyond }.push(node);
-                chosen.choose(node);
-            }
+            let lamps = painted.iter().chain(&similar.found);
+            let Some(is_on_plane) = self.place_in_line(model, lamps, taken, node)? else { continue };
+            if is_on_plane { &mut similar.found } else { &mut similar.beyond }.push(node);
+            chosen.choose(node);
         }
         Ok(())
+    }
+
+    /// Whether a node that continues a row of `lamps` ([`Self::add_in_line`]) lies on the plane; `None` if it continues
+    /// no row.
+    fn place_in_line<'a>(
+        &self,
+        model: &LampLimits,
+        mut lamps: impl Iterator<Item = &'a u32>,
+        taken: &[bool],
+        node: u32,
+    ) -> Result<Option<bool>> {
+        let k = node as usize;
+        let has_shape =
+            |lamp: &u32| self.is_cut(*lamp) || self.lamps_of_equal_shape(std::iter::once(lamp), k).next().is_some();
+        let is_in_line = |lamp: &u32| {
+            let surface = self.regions.surface.as_ref();
+            surface.is_some_and(|surface| surface.are_in_line(k, *lamp as usize, EQUAL_WIDTH)) && has_shape(lamp)
+        };
+        if self.likeness(model, k, IN_LINE) < 1.0 || self.is_cut(node) || !lamps.any(is_in_line) {
+            return Ok(None);
+        }
+        let ring = surroundings::around(node, self.tree, self.photo, self.plane, taken)?;
+        let ring = ring.filter(|ring| self.ring_likeness(model, k, ring) >= IN_LINE.contrast);
+        Ok(ring.map(|ring| ring.on_plane >= ON_PLANE || self.is_on_face(k)))
     }
 
     /// Adds the regions that meet the limits [`ALIKE`] and have the size and shape of a lamp under a stroke or of a
@@ -398,7 +425,7 @@ impl Search<'_> {
     /// Whether a node has the size of a lamp. If the room has a box layout, area and aspect are measured on the plane;
     /// a lamp that the photo's border cuts may then have any aspect, and an area down to `MIN_CUT_AREA` times the
     /// minimum. Without a layout, area and breadth are measured in the photo. The minimum area in photo pixels always
-    /// applies.
+    /// applies, multiplied by `limits.area`.
     fn has_size(&self, model: &LampLimits, limits: Limits, node: usize) -> bool {
         let min_area = limits.area * model.min_area;
         let regions = self.regions;

@@ -357,3 +357,26 @@ fn without_strokes_light_with_soft_edges_on_the_ceiling_is_no_lamp() {
         assert_eq!(found.is_ok(), is_lamp, "L* falls by {slope} per pixel");
     }
 }
+
+#[test]
+fn without_strokes_a_dim_lamp_that_continues_a_row_is_found_and_other_dim_regions_are_not() {
+    // Three lamps and a region 25 units of L* darker: in their row, beside it, in it but wider, or beyond the plane.
+    let row = [[20, 20, 60, 32], [120, 20, 160, 32], [220, 20, 260, 32]];
+    let lamps = |dim: [usize; 4], strokes: &[Stroke], plane_end: usize| {
+        let mut features = features_with(&[&row[..], &[dim]].concat());
+        for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+            if is_in(dim, i % WIDTH, i / WIDTH) {
+                pixel[0] -= 25.0;
+            }
+        }
+        let plane = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < plane_end)]).unwrap();
+        let found = segment_in(&features, strokes, Some(&plane));
+        (found.mask.pixel((dim[0] + dim[2]) / 2, (dim[1] + dim[3]) / 2)[0] > 0.5, found.beyond.len())
+    };
+    let in_row = [20, 80, 60, 92];
+    assert_eq!(lamps(in_row, &[], 120), (true, 0));
+    assert_eq!(lamps([75, 80, 105, 92], &[], 120), (false, 0));
+    assert_eq!(lamps([14, 80, 66, 92], &[], 120), (false, 0));
+    assert_eq!(lamps(in_row, &[], 50), (false, 1));
+    assert_eq!(lamps(in_row, &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], 120), (false, 0));
+}
