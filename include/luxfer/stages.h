@@ -1174,7 +1174,7 @@ typedef struct luxfer_relight_report {
  */
 #define LUXFER_QUANTITY_OUTGOING 0
 
-/** Light that arrives at the target surface, expressed as the radiance that the surface would have if it were white. */
+/** Light that arrives at the target surface, as the radiance of a white surface in this light: illuminance / pi. */
 #define LUXFER_QUANTITY_INCIDENT 1
 
 /** The mean of the light over the target surface should equal the target value. */

@@ -466,8 +466,8 @@ class Quantity(IntEnum):
     """Light that the target surface reflects diffusely, its albedo included: the radiance that a photo shows of
     a matt surface."""
     INCIDENT = 1
-    """Light that arrives at the target surface, expressed as the radiance that the surface would have if it
-    were white."""
+    """Light that arrives at the target surface, as the radiance of a white surface in this light: illuminance /
+    pi."""
 
 
 class Fit(IntEnum):

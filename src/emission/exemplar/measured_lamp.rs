@@ -44,8 +44,8 @@ impl MeasuredLamp {
         Self { component, centre: lamp.centre, size, weight, blur }
     }
 
-    /// Groups lamps of equal size: `is_like` decides whether two sizes are equal. The lamps of each group are returned in
-    /// the order of decreasing weight.
+    /// Groups lamps of equal size: `is_like` decides whether two sizes are equal. The lamps of each group are returned
+    /// in the order of decreasing weight.
     pub fn kinds(lamps: &[Self], is_like: fn(&Self, &Self) -> bool) -> Vec<Vec<Self>> {
         // Process lamps in the order of increasing blur, so that each lamp is compared with lamps of similar blur. A
         // lamp joins the group whose last lamp is nearest in size.

@@ -123,8 +123,8 @@ fn first_guess(samples: &[Sample]) -> Option<f64> {
 }
 
 /// Whether a pixel is well exposed in both photos. This is judged by the sum of its two values, so that noise does not
-/// select pixels that are bright in one photo and dark in the other. Besides, the value that the short exposure predicts
-/// for the long one must not be clipped: at the edges of lamps, one photo may show the lamp and the other its
+/// select pixels that are bright in one photo and dark in the other. Besides, the value that the short exposure
+/// predicts for the long one must not be clipped: at the edges of lamps, one photo may show the lamp and the other its
 /// surroundings.
 fn is_well_exposed(s: &Sample, ratio: f64, clip: f32) -> bool {
     let short = f64::from(s.short + s.long) / (1.0 + ratio);
