@@ -80,7 +80,7 @@ compare_bits() {
   [ -s "$out/check/linux-x86_64.bits" ] || { say same_bits "not compared"; return 0; }
   different="$(diff "$out/check/linux-x86_64.bits" "$out/check/$target.bits" | awk '/^>/ { print $2 }' | xargs)"
   count="$(echo "$different" | wc -w)"
-  if [ "$count" = 0 ]; then say same_bits "all $all"; else say same_bits "$((all - count)) of $all; not: $different"; fi
+  if [ "$count" = 0 ]; then say same_bits "all $all"; else say same_bits "$((all - count)) of $all; different: $(echo "$different" | sed 's/ /, /g')"; fi
 }
 
 # Installs the wheel into a clean environment, whose PATH has no compiler, and runs a rendering and the command line.

@@ -13,7 +13,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 CHECKS = ROOT / "out" / "dist" / "check"
 PAGE = ROOT / "docs" / "guide" / "platforms.md"
 BEGIN, END = "<!-- platforms: written by `make dist-check` -->", "<!-- end of platforms -->"
-HEAD = ["target", "builds", "runs here", "results with the bits of linux-x86_64", "test programs passed", "size of the library", "wheel", "needs"]
+HEAD = ["target", "builds", "runs here", "results bit-identical to linux-x86_64", "test programs passed", "size of the library", "wheel", "needs"]
 ORDER = ["linux-x86_64", "linux-aarch64", "windows-x86_64"]
 
 

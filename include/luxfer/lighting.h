@@ -519,8 +519,9 @@ typedef struct luxfer_importance_report {
     /** Half-widths of the 95 % confidence intervals of the field response, in cd/m². */
     double half_width[3];
     /**
-     * The response that cells of twice the width and height would give, minus the field response, in cd/m². The error
-     * that comes from the size of the cells is about a third of this difference, which also contains noise.
+     * The result for a map whose cells are twice as wide and high, minus the value in response, in cd/m² per channel.
+     * About a third of this difference is the error of response that comes from the size of the cells. The difference
+     * also contains noise.
      */
     double resolution_difference[3];
 } luxfer_importance_report;
@@ -662,9 +663,9 @@ typedef struct luxfer_placement {
     /** Half-widths of the 95 % confidence intervals of the field response, in cd/m². */
     double half_width[3];
     /**
-     * The response computed with cells of twice the width and height, minus the field response, in cd/m² per channel.
-     * About a third of this difference is the error of response that comes from the size of the map's cells. The
-     * difference also contains noise.
+     * The result for a map whose cells are twice as wide and high, minus the value in response, in cd/m² per channel.
+     * About a third of this difference is the error of response that comes from the size of the cells. The difference
+     * also contains noise.
      */
     double resolution_difference[3];
 } luxfer_placement;
@@ -818,8 +819,8 @@ typedef struct luxfer_observer_glare {
     /** Standard error of the field background, in cd/m². */
     double background_error;
     /**
-     * Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires that are not
-     * rated, of point, spot and directional lights, of the environment, and the glow of emissive meshes.
+     * Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires without a
+     * luminous opening, of point, spot and directional lights, of the environment, and the glow of emissive meshes.
      */
     double unrated_lux;
     /** Solid angle of the visible parts of all sources in view, in steradians. */
@@ -827,8 +828,8 @@ typedef struct luxfer_observer_glare {
     /** Number of sources in view: rated luminaires, and luminous parts of emissive meshes. */
     uint32_t sources;
     /**
-     * Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Lamps in an
-     * emission texture that are narrower than 0.32 degrees may be missed.
+     * Number of sources in view whose solid angle is outside [0.0003, 0.1] steradians, the range for which CIE 117 is
+     * valid; they count in ugr too. Lamps in an emission texture that are narrower than 0.32 degrees may be missed.
      */
     uint32_t outside_range;
 } luxfer_observer_glare;
@@ -919,7 +920,8 @@ typedef struct luxfer_gonio_report {
  * The result is of absolute photometry, states no power and no colour, and has the name of the first mesh with a name.
  * Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts that
  * emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
- * intensities are right, but glare, near light and pictures of the luminaire are not.
+ * intensities, which hold far from the luminaire, are right, but its glare, its pictures and the light close to it are
+ * wrong.
  *
  * Intensities between the angles are interpolated linearly; the stated errors contain the noise of the paths only. The
  * caller releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
@@ -1311,7 +1313,10 @@ typedef struct luxfer_pendant {
 /** Any other body of revolution, such as a bell. */
 #define LUXFER_BODY_OTHER 7
 
-/** No length is known; suspensions determine the size if any are given. */
+/**
+ * No length is known. The points where suspensions meet the ceiling then determine the size, together with the height
+ * of the ceiling. Without such points, each lamp has LUXFER_DOUBT_SIZE.
+ */
 #define LUXFER_KNOWN_NOTHING 0
 
 /** The distance of the first lamp's top below the ceiling. */

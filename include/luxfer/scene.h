@@ -285,8 +285,9 @@ typedef struct luxfer_material_params {
     /** Emission per channel in cd/m², each in [0, 1e15]; default 0. */
     float emission[3];
     /**
-     * Share of the light entering the surface that passes straight through it, instead of being reflected diffusely,
-     * in [0, 1]; default 0.
+     * Share of the light entering the non-metallic part of the surface that passes straight through, as through a thin
+     * clear pane, instead of being reflected diffusely, in [0, 1]; default 0. base_color tints this light, and
+     * roughness does not blur it.
      */
     float transmission;
     /** Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly. */

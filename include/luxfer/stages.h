@@ -233,8 +233,9 @@ typedef struct luxfer_rectify_report {
 #define LUXFER_METRIC_SEGMENT 0
 
 /**
- * The distance exactly as Eq. 2 of Lighting Style Transfer states it. It is measured for the whole part of the line
- * that the photo shows, instead of the detected segment.
+ * The distance by Eq. 2 of Lighting Style Transfer, which may be infinite: the smaller of d and d x / y. Here d is the
+ * distance of the vanishing point from the line, x is half the length of the part of the line that the photo shows,
+ * and y is the distance along the line from the middle of this part to the point nearest to the vanishing point.
  */
 #define LUXFER_METRIC_VISIBLE_LINE 1
 
@@ -548,9 +549,10 @@ typedef struct luxfer_segment_params {
     /** Seed of the samples that are drawn; default 1. */
     uint64_t seed;
     /**
-     * Smallest contrast that the refinement follows. Where the standard deviation of the first three channels within a
-     * window is below this value, the refinement smooths the mask; where it is above, the mask follows the edges. In
-     * the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
+     * Smallest contrast that the refinement by refine_radius follows. Where the standard deviation of the first three
+     * channels within one of its windows is below this value, the refinement smooths the mask; where it is above, the
+     * mask follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8. No
+     * effect if refine_radius is 0.
      */
     double refine_tolerance;
     /**
@@ -1062,8 +1064,9 @@ luxfer_status luxfer_emission_clear_styles(luxfer_emission *emission);
 /**
  * Starts a job that composes the texture: it decides where every lamp lies, but makes no texels. The composition
  * replaces a texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
- * LUXFER_LAW_BEST never tries a second law here, because that needs the texels. luxfer_emission_get_report and
- * luxfer_emission_get_luminaire describe the composition and its lamps. The caller releases *job. Any thread.
+ * With LUXFER_LAW_BEST, a composition never tries other laws, because that needs the texels.
+ * luxfer_emission_get_report and luxfer_emission_get_luminaire describe the composition and its lamps. The caller
+ * releases *job. Any thread.
  */
 luxfer_status luxfer_emission_start_composition(luxfer_emission *emission,
                                                 const luxfer_emission_params *params,
@@ -1073,8 +1076,9 @@ luxfer_status luxfer_emission_start_composition(luxfer_emission *emission,
  * Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
  * of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. Whatever the sizes and
  * the order of the tiles, they equal, to the bit, the texture and the mask that luxfer_emission_start makes with the
- * same settings, unless LUXFER_LAW_BEST tries a second law there. The call takes up to a second per megapixel. The
- * caller releases *tile. Any thread; several threads may render tiles at the same time.
+ * same settings, unless LUXFER_LAW_BEST makes luxfer_emission_start try other laws, which a composition never does.
+ * The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads may render tiles
+ * at the same time.
  * LUXFER_NOT_READY before a job of luxfer_emission_start_composition has succeeded; LUXFER_INVALID_ARGUMENT if the
  * rectangle is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -1170,7 +1174,7 @@ typedef struct luxfer_relight_report {
  */
 #define LUXFER_QUANTITY_OUTGOING 0
 
-/** Light that arrives at the target surface, expressed as the radiance that the surface would have if it were white. */
+/** Light that arrives at the target surface, as the radiance of a white surface in this light: illuminance / pi. */
 #define LUXFER_QUANTITY_INCIDENT 1
 
 /** The mean of the light over the target surface should equal the target value. */

@@ -764,9 +764,9 @@ typedef struct luxfer_warning {
  * The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows another
  * surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with the exact
  * motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, are compared along
- * the motion; without such guides, or in a preview, nothing is compared and the warning never occurs. The severity is
- * the share of pixels with wrong motion among the pixels that were compared. The warning points to the pixel with the
- * largest error.
+ * the motion; without such guides, and in a preview, this second comparison is left out, and the warning does not
+ * occur. The severity is the share of pixels with wrong motion among the pixels that were compared. The warning points
+ * to the pixel with the largest error.
  */
 #define LUXFER_WARNING_MOTION_DISAGREES 28
 

@@ -68,8 +68,9 @@ pub unsafe extern "C" fn luxfer_emission_clear_styles(emission: *mut luxfer_emis
 
 /// Starts a job that composes the texture: it decides where every lamp lies, but makes no texels. The composition
 /// replaces a texture that luxfer_emission_start has made. params and all errors are as for luxfer_emission_start.
-/// LUXFER_LAW_BEST never tries a second law here, because that needs the texels. luxfer_emission_get_report and
-/// luxfer_emission_get_luminaire describe the composition and its lamps. The caller releases *job. Any thread.
+/// With LUXFER_LAW_BEST, a composition never tries other laws, because that needs the texels.
+/// luxfer_emission_get_report and luxfer_emission_get_luminaire describe the composition and its lamps. The caller
+/// releases *job. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_start_composition(
     emission: *mut luxfer_emission,
@@ -93,8 +94,9 @@ pub unsafe extern "C" fn luxfer_emission_start_composition(
 /// Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
 /// of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. Whatever the sizes and
 /// the order of the tiles, they equal, to the bit, the texture and the mask that luxfer_emission_start makes with the
-/// same settings, unless LUXFER_LAW_BEST tries a second law there. The call takes up to a second per megapixel. The
-/// caller releases *tile. Any thread; several threads may render tiles at the same time.
+/// same settings, unless LUXFER_LAW_BEST makes luxfer_emission_start try other laws, which a composition never does.
+/// The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads may render tiles
+/// at the same time.
 /// LUXFER_NOT_READY before a job of luxfer_emission_start_composition has succeeded; LUXFER_INVALID_ARGUMENT if the
 /// rectangle is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]

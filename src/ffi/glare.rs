@@ -45,15 +45,15 @@ pub struct luxfer_observer_glare {
     pub background: f64,
     /// Standard error of the field background, in cd/m².
     pub background_error: f64,
-    /// Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires that are not
-    /// rated, of point, spot and directional lights, of the environment, and the glow of emissive meshes.
+    /// Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires without a
+    /// luminous opening, of point, spot and directional lights, of the environment, and the glow of emissive meshes.
     pub unrated_lux: f64,
     /// Solid angle of the visible parts of all sources in view, in steradians.
     pub solid_angle: f64,
     /// Number of sources in view: rated luminaires, and luminous parts of emissive meshes.
     pub sources: u32,
-    /// Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Lamps in an
-    /// emission texture that are narrower than 0.32 degrees may be missed.
+    /// Number of sources in view whose solid angle is outside [0.0003, 0.1] steradians, the range for which CIE 117 is
+    /// valid; they count in ugr too. Lamps in an emission texture that are narrower than 0.32 degrees may be missed.
     pub outside_range: u32,
 }
 

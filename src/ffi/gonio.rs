@@ -80,7 +80,8 @@ versioned!(luxfer_gonio_report, [40], {
 /// The result is of absolute photometry, states no power and no colour, and has the name of the first mesh with a name.
 /// Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts that
 /// emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
-/// intensities are right, but glare, near light and pictures of the luminaire are not.
+/// intensities, which hold far from the luminaire, are right, but its glare, its pictures and the light close to it are
+/// wrong.
 ///
 /// Intensities between the angles are interpolated linearly; the stated errors contain the noise of the paths only. The
 /// caller releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is

@@ -80,8 +80,9 @@ pub struct luxfer_importance_report {
     pub response: [f64; 3],
     /// Half-widths of the 95 % confidence intervals of the field response, in cd/m².
     pub half_width: [f64; 3],
-    /// The response that cells of twice the width and height would give, minus the field response, in cd/m². The error
-    /// that comes from the size of the cells is about a third of this difference, which also contains noise.
+    /// The result for a map whose cells are twice as wide and high, minus the value in response, in cd/m² per channel.
+    /// About a third of this difference is the error of response that comes from the size of the cells. The difference
+    /// also contains noise.
     pub resolution_difference: [f64; 3],
 }
 

@@ -45,7 +45,8 @@ pub const LUXFER_BODY_OTHER: luxfer_body = 7;
 
 /// The length that determines the size of the lamps: a LUXFER_KNOWN_ value.
 pub type luxfer_known = i32;
-/// No length is known; suspensions determine the size if any are given.
+/// No length is known. The points where suspensions meet the ceiling then determine the size, together with the height
+/// of the ceiling. Without such points, each lamp has LUXFER_DOUBT_SIZE.
 pub const LUXFER_KNOWN_NOTHING: luxfer_known = 0;
 /// The distance of the first lamp's top below the ceiling.
 pub const LUXFER_KNOWN_DROP: luxfer_known = 1;

@@ -50,8 +50,9 @@ pub type luxfer_metric = i32;
 /// The distance of the detected segment's end points from the line through its midpoint and the vanishing point;
 /// finite for vanishing points at infinity.
 pub const LUXFER_METRIC_SEGMENT: luxfer_metric = 0;
-/// The distance exactly as Eq. 2 of Lighting Style Transfer states it. It is measured for the whole part of the line
-/// that the photo shows, instead of the detected segment.
+/// The distance by Eq. 2 of Lighting Style Transfer, which may be infinite: the smaller of d and d x / y. Here d is the
+/// distance of the vanishing point from the line, x is half the length of the part of the line that the photo shows,
+/// and y is the distance along the line from the middle of this part to the point nearest to the vanishing point.
 pub const LUXFER_METRIC_VISIBLE_LINE: luxfer_metric = 1;
 
 /// The source of a focal length: a LUXFER_FOCAL_ value.

@@ -29,7 +29,7 @@ pub type luxfer_quantity = i32;
 /// Light that the target surface reflects diffusely, its albedo included: the radiance that a photo shows of a matt
 /// surface.
 pub const LUXFER_QUANTITY_OUTGOING: luxfer_quantity = 0;
-/// Light that arrives at the target surface, expressed as the radiance that the surface would have if it were white.
+/// Light that arrives at the target surface, as the radiance of a white surface in this light: illuminance / pi.
 pub const LUXFER_QUANTITY_INCIDENT: luxfer_quantity = 1;
 
 /// How the light of the target surface is compared with its target value: a LUXFER_FIT_ value.

@@ -48,8 +48,9 @@ pub struct luxfer_material_params {
     pub roughness: f32,
     /// Emission per channel in cd/m², each in [0, 1e15]; default 0.
     pub emission: [f32; 3],
-    /// Share of the light entering the surface that passes straight through it, instead of being reflected diffusely,
-    /// in [0, 1]; default 0.
+    /// Share of the light entering the non-metallic part of the surface that passes straight through, as through a thin
+    /// clear pane, instead of being reflected diffusely, in [0, 1]; default 0. base_color tints this light, and
+    /// roughness does not blur it.
     pub transmission: f32,
     /// Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly.
     pub ior: f32,

@@ -75,9 +75,10 @@ pub struct luxfer_segment_params {
     pub ridge: f64,
     /// Seed of the samples that are drawn; default 1.
     pub seed: u64,
-    /// Smallest contrast that the refinement follows. Where the standard deviation of the first three channels within a
-    /// window is below this value, the refinement smooths the mask; where it is above, the mask follows the edges. In
-    /// the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8.
+    /// Smallest contrast that the refinement by refine_radius follows. Where the standard deviation of the first three
+    /// channels within one of its windows is below this value, the refinement smooths the mask; where it is above, the
+    /// mask follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8. No
+    /// effect if refine_radius is 0.
     pub refine_tolerance: f64,
     /// Kind of object that the positive strokes mark: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the
     /// subject is lamps, the settings above have no effect.

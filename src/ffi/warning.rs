@@ -117,9 +117,9 @@ pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
 /// The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows another
 /// surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with the exact
 /// motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, are compared along
-/// the motion; without such guides, or in a preview, nothing is compared and the warning never occurs. The severity is
-/// the share of pixels with wrong motion among the pixels that were compared. The warning points to the pixel with the
-/// largest error.
+/// the motion; without such guides, and in a preview, this second comparison is left out, and the warning does not
+/// occur. The severity is the share of pixels with wrong motion among the pixels that were compared. The warning points
+/// to the pixel with the largest error.
 pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
 /// The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast shadow if the
 /// painted part of a half-painted picture has no shadow. The new paint there is a guess. The severity is the share of

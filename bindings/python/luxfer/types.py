@@ -294,8 +294,10 @@ class Metric(IntEnum):
     """The distance of the detected segment's end points from the line through its midpoint and the vanishing
     point; finite for vanishing points at infinity."""
     VISIBLE_LINE = 1
-    """The distance exactly as Eq. 2 of Lighting Style Transfer states it. It is measured for the whole part of
-    the line that the photo shows, instead of the detected segment."""
+    """The distance by Eq. 2 of Lighting Style Transfer, which may be infinite: the smaller of d and d x / y.
+    Here d is the distance of the vanishing point from the line, x is half the length of the part of the line
+    that the photo shows, and y is the distance along the line from the middle of this part to the point nearest
+    to the vanishing point."""
 
 
 class RectifyImage(IntEnum):
@@ -464,8 +466,8 @@ class Quantity(IntEnum):
     """Light that the target surface reflects diffusely, its albedo included: the radiance that a photo shows of
     a matt surface."""
     INCIDENT = 1
-    """Light that arrives at the target surface, expressed as the radiance that the surface would have if it
-    were white."""
+    """Light that arrives at the target surface, as the radiance of a white surface in this light: illuminance /
+    pi."""
 
 
 class Fit(IntEnum):
@@ -685,9 +687,9 @@ class WarningCode(IntEnum):
     """The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame
     shows another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is
     compared with the exact motion of their scenes. Otherwise the GuideRange.DATA guides, such as object codes
-    or normals, are compared along the motion; without such guides, or in a preview, nothing is compared and the
-    warning never occurs. The severity is the share of pixels with wrong motion among the pixels that were
-    compared. The warning points to the pixel with the largest error."""
+    or normals, are compared along the motion; without such guides, and in a preview, this second comparison is
+    left out, and the warning does not occur. The severity is the share of pixels with wrong motion among the
+    pixels that were compared. The warning points to the pixel with the largest error."""
     LIGHT_NOT_PAINTED = 29
     """The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast
     shadow if the painted part of a half-painted picture has no shadow. The new paint there is a guess. The
@@ -769,7 +771,8 @@ class Known(IntEnum):
     """The length that determines the size of the lamps."""
 
     NOTHING = 0
-    """No length is known; suspensions determine the size if any are given."""
+    """No length is known. The points where suspensions meet the ceiling then determine the size, together with
+    the height of the ceiling. Without such points, each lamp has Doubt.SIZE."""
     DROP = 1
     """The distance of the first lamp's top below the ceiling."""
     DIAMETER = 2
@@ -1250,8 +1253,9 @@ class MaterialParams(TypedDict, total=False):
     emission: Sequence[float]
     """Emission per channel in cd/m², each in [0, 1e15]; default 0."""
     transmission: float
-    """Share of the light entering the surface that passes straight through it, instead of being reflected
-    diffusely, in [0, 1]; default 0."""
+    """Share of the light entering the non-metallic part of the surface that passes straight through, as through
+    a thin clear pane, instead of being reflected diffusely, in [0, 1]; default 0. base_color tints this light,
+    and roughness does not blur it."""
     ior: float
     """Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly."""
     alpha: float
@@ -1720,9 +1724,10 @@ class SegmentParams(TypedDict, total=False):
     seed: int
     """Seed of the samples that are drawn; default 1."""
     refine_tolerance: float
-    """Smallest contrast that the refinement follows. Where the standard deviation of the first three channels
-    within a window is below this value, the refinement smooths the mask; where it is above, the mask follows
-    the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8."""
+    """Smallest contrast that the refinement by refine_radius follows. Where the standard deviation of the first
+    three channels within one of its windows is below this value, the refinement smooths the mask; where it is
+    above, the mask follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6];
+    default 8. No effect if refine_radius is 0."""
     subject: Subject | str | int
     """Kind of object that the positive strokes mark: Subject; default Subject.AUTO. If the subject is lamps,
     the settings above have no effect."""
@@ -2268,9 +2273,9 @@ class ImportanceReport:
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
     resolution_difference: tuple[float, float, float]
-    """The response that cells of twice the width and height would give, minus the field response, in cd/m². The
-    error that comes from the size of the cells is about a third of this difference, which also contains
-    noise."""
+    """The result for a map whose cells are twice as wide and high, minus the value in response, in cd/m² per
+    channel. About a third of this difference is the error of response that comes from the size of the cells.
+    The difference also contains noise."""
 
 
 class PlacementParams(TypedDict, total=False):
@@ -2321,9 +2326,9 @@ class Placement:
     half_width: tuple[float, float, float]
     """Half-widths of the 95 % confidence intervals of the field response, in cd/m²."""
     resolution_difference: tuple[float, float, float]
-    """The response computed with cells of twice the width and height, minus the field response, in cd/m² per
-    channel. About a third of this difference is the error of response that comes from the size of the map's
-    cells. The difference also contains noise."""
+    """The result for a map whose cells are twice as wide and high, minus the value in response, in cd/m² per
+    channel. About a third of this difference is the error of response that comes from the size of the cells.
+    The difference also contains noise."""
 
 
 @dataclass(frozen=True)
@@ -2376,15 +2381,17 @@ class ObserverGlare:
     background_error: float
     """Standard error of the field background, in cd/m²."""
     unrated_lux: float
-    """Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires that are
-    not rated, of point, spot and directional lights, of the environment, and the glow of emissive meshes."""
+    """Direct illuminance at the eye, in lux, from all light that the rating leaves out: of luminaires without a
+    luminous opening, of point, spot and directional lights, of the environment, and the glow of emissive
+    meshes."""
     solid_angle: float
     """Solid angle of the visible parts of all sources in view, in steradians."""
     sources: int
     """Number of sources in view: rated luminaires, and luminous parts of emissive meshes."""
     outside_range: int
-    """Number of sources whose solid angle is outside [0.0003, 0.1], the range for which CIE 117 is valid. Lamps
-    in an emission texture that are narrower than 0.32 degrees may be missed."""
+    """Number of sources in view whose solid angle is outside [0.0003, 0.1] steradians, the range for which CIE
+    117 is valid; they count in ugr too. Lamps in an emission texture that are narrower than 0.32 degrees may be
+    missed."""
 
 
 class GonioParams(TypedDict, total=False):
