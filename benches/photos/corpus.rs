@@ -190,7 +190,7 @@ fn numbers_of(list: &str, name: &str) -> Vec<Vec<f64>> {
 /// The lamps of a photo that are drawn anew (`redrawn.txt`); empty for most photos.
 fn redrawn(name: &str) -> Vec<Lamp> {
     let corners = |numbers: &Vec<f64>| {
-        assert!(numbers.len() % 2 == 0, "{name}: a corner of redrawn.txt has no y");
+        assert!(numbers.len().is_multiple_of(2), "{name}: a corner of redrawn.txt has no y");
         numbers.chunks_exact(2).map(|c| DVec2::new(c[0], c[1])).collect()
     };
     let polygons: Vec<Vec<DVec2>> = numbers_of(include_str!("redrawn.txt"), name).iter().map(corners).collect();

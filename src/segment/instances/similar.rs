@@ -235,8 +235,8 @@ impl Search<'_> {
 
     /// If the lamps are proposed, adds the regions that meet the limits [`IN_LINE`] and continue a row of lamps: they
     /// are as wide across the row as a lamp that was found before, and have its shape unless the border cuts that lamp.
-    /// Doubtful regions are tried first. Regions off the plane are added to `beyond`. Regions that the border cuts are
-    /// left out.
+    /// Doubtful regions are tried first. Regions off the plane are added to `beyond`, and are lamps only if they lie on
+    /// its face of the room. Regions that the border cuts are left out.
     fn add_in_line(
         &self,
         model: &LampLimits,
@@ -267,7 +267,12 @@ impl Search<'_> {
             }
             let lamps = painted.iter().chain(&similar.found);
             let Some(is_on_plane) = self.place_in_line(model, lamps, taken, node)? else { continue };
-            if is_on_plane { &mut similar.found } else { &mut similar.beyond }.push(node);
+            if is_on_plane || self.is_on_face(node as usize) {
+                similar.found.push(node);
+            }
+            if !is_on_plane {
+                similar.beyond.push(node);
+            }
             chosen.choose(node);
         }
         Ok(())
@@ -294,7 +299,7 @@ impl Search<'_> {
         }
         let ring = surroundings::around(node, self.tree, self.photo, self.plane, taken)?;
         let ring = ring.filter(|ring| self.ring_likeness(model, k, ring) >= IN_LINE.contrast);
-        Ok(ring.map(|ring| ring.on_plane >= ON_PLANE || self.is_on_face(k)))
+        Ok(ring.map(|ring| ring.on_plane >= ON_PLANE))
     }
 
     /// Adds the regions that meet the limits [`ALIKE`] and have the size and shape of a lamp under a stroke or of a
