@@ -158,8 +158,8 @@ impl OnFace {
     }
 
     /// Centres and extents of two nodes, across a row along v and across a row along u. A strip of width w has the
-    /// variance w² / 12. The variance within a pixel is a twelfth of its area; take the mean over the pixels, weighted by
-    /// area.
+    /// variance w² / 12. The variance within a pixel is a twelfth of its area; take the mean over the pixels, weighted
+    /// by area.
     fn across(&self, a: usize, b: usize) -> [[(f64, f64); 2]; 2] {
         [(&self.u, &self.uu), (&self.v, &self.vv)].map(|(first, second)| {
             [a, b].map(|node| {

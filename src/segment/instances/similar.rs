@@ -137,8 +137,8 @@ pub struct Similar {
     pub found: Vec<u32>,
     /// Regions on the plane whose likeness to the lamps under the strokes is just below the minimum for a lamp.
     pub doubtful: Vec<u32>,
-    /// Regions off the plane that look like lamps and lie in a row with lamps of the same size and shape, or of the same
-    /// width if the border of the photo cuts those lamps. They suggest that the plane continues there.
+    /// Regions off the plane that look like lamps and lie in a row with lamps of the same size and shape, or of the
+    /// same width if the border of the photo cuts those lamps. They suggest that the plane continues there.
     pub beyond: Vec<u32>,
 }
 
