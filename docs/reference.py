@@ -170,7 +170,7 @@ def python_pages() -> dict[str, tuple[str, str]]:
             text.append(klass(node) if isinstance(node, ast.ClassDef) else function(node, "##", ""))
         out[f"reference/python/{path.stem}.md"] = (path.stem, "\n".join(text))
     if missing := names - described:
-        raise Undocumented(f"luxfer.__all__ has what no page describes: {missing}")
+        raise Undocumented(f"no page describes these names of luxfer.__all__: {missing}")
     out["reference/python/design.md"] = ("design", design_page())
     return out
 
@@ -207,7 +207,7 @@ def design_page() -> str:
                 described |= {node.name, owner} - {""}
                 text.append(klass(node) if isinstance(node, ast.ClassDef) else function(node, "##", owner))
     if missing := names - described:
-        raise Undocumented(f"luxfer.design.__all__ has what no page describes: {missing}")
+        raise Undocumented(f"no page describes these names of luxfer.design.__all__: {missing}")
     return "\n".join(text)
 
 

@@ -31,7 +31,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("scene", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "photometry"]),
     ("render", &["simd", "error", "job", "exec", "rng", "image", "geometry", "photometry", "accel", "scene"]),
     ("patch", &["simd", "error", "job", "exec", "rng", "image"]),
-    // Stages never use each other, with one exception: segmentation reads the number of channels of the features.
+    // Stages never use each other, with one exception: segmentation reads the layout of the channels of the features.
     ("features", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "network"]),
     ("segment", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry", "features"]),
     ("rectify", &["simd", "error", "warning", "job", "exec", "rng", "image", "geometry"]),

@@ -27,6 +27,9 @@ const NEUTRAL_CONFIDENCE: f32 = 0.05;
 const MAX_RATIO: f32 = 1e4;
 /// Maximum number of depth samples from which quantiles are estimated.
 const QUANTILE_SAMPLES: usize = 1 << 16;
+/// Quantile of the inverse depths that is taken for the nearest depth. It leaves out isolated wrong values.
+/// [convention]
+const NEAREST: f64 = 0.98;
 
 /// Builds the surface from the caller's depth map. Scales the depth so that its 2 % quantile lies on the near plane,
 /// and fills holes from their surroundings.
@@ -60,7 +63,7 @@ pub fn from_map(map: &DepthMap, frustum: &Frustum, radius: usize, job: Job) -> R
         let k = ((known.len() - 1) as f64 * q).round() as usize;
         *known.select_nth_unstable_by(k, f32::total_cmp).1
     };
-    let (median, nearest) = (quantile(0.5), quantile(0.98));
+    let (median, nearest) = (quantile(0.5), quantile(NEAREST));
     let (low, high) = (median / MAX_RATIO, median.min(f32::MAX / MAX_RATIO) * MAX_RATIO);
     let nearest = nearest.clamp(low, high);
     let (inverse, confidence) = exec::both(|| Image::new(width, height, 1), || Image::new(width, height, 1));

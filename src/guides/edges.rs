@@ -15,6 +15,8 @@ const FULL_STEP: f32 = 0.02;
 /// Standard deviation of the blur of the edges, in pixels. Because of the blur, patches beside an edge contain a part
 /// of the edge. [bench constants:guides]
 const BLUR: f32 = 0.8;
+/// Strength below which an edge is noise on a curved surface. [convention]
+const WEAK: f32 = 0.2;
 
 /// Returns the strength of the edge at each pixel, in `[0, 1]`.
 pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Result<Image> {
@@ -48,8 +50,8 @@ pub fn edges(normals: &Image, material: &Image, depth: &Image, job: Job) -> Resu
                 let step = (a + b - 2.0 * d).abs() / (FULL_STEP * d);
                 *edge = if step.is_finite() { edge.max(step) } else { *edge };
             }
-            // Suppress strengths below 0.2, which are noise on curved surfaces, and rescale the others to [0, 1].
-            *edge = ((*edge - 0.2) / 0.8).clamp(0.0, 1.0);
+            // Suppress weak edges, and rescale the others to [0, 1].
+            *edge = ((*edge - WEAK) / (1.0 - WEAK)).clamp(0.0, 1.0);
         }
     })?;
     pyramid::blur(&sharp, BLUR, job)

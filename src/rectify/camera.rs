@@ -13,6 +13,12 @@ use glam::{DMat3, DVec2, DVec3};
 /// Standard deviation, in radians, of an axis that no line determines and only a convention fixes (for instance, that
 /// the camera is upright). [convention]
 pub const FREE_ERROR: f64 = 0.5;
+/// Maximum cosine of the angle between two room axes before they are made orthogonal: 66°. It lies between the 90° of
+/// two axes and the small angle between two estimates of one axis. [convention]
+const MAX_AXIS_COSINE: f64 = 0.4;
+/// Range of the focal length that the directions give, relative to its start value. Outside it, they do not determine
+/// the focal length. [convention: a factor of ten]
+const FOCAL_CHANGE: std::ops::Range<f64> = 0.1..10.0;
 
 /// The estimated camera, with the vanishing point of each room axis.
 pub struct EstimatedCamera {
@@ -35,11 +41,11 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let orthogonal = &found.points[..found.points.len().min(3)];
     let Focal { focal, spread: focal_spread, source } = focal_length(orthogonal, principal, params.focal, expected);
 
-    // Drop each direction within 66 degrees of a direction with better support: it is not a room axis.
+    // Drop each direction that is far from perpendicular to a direction with better support: it is not a room axis.
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
     let mut chosen: Vec<usize> = Vec::new();
     for (k, p) in orthogonal.iter().enumerate() {
-        if chosen.iter().all(|&c| ray(&orthogonal[c]).dot(ray(p)).abs() < 0.4) {
+        if chosen.iter().all(|&c| ray(&orthogonal[c]).dot(ray(p)).abs() < MAX_AXIS_COSINE) {
             chosen.push(k);
         }
     }
@@ -164,7 +170,7 @@ fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) ->
             break;
         }
     }
-    (deviation.is_finite() && (0.1..10.0).contains(&(square.sqrt() / start)))
+    (deviation.is_finite() && FOCAL_CHANGE.contains(&(square.sqrt() / start)))
         .then(|| (square.ln() / 2.0, deviation.max(1e-9)))
 }
 

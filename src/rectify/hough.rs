@@ -26,6 +26,10 @@ const SUPPRESSED: (usize, usize) = (4, 4);
 /// bridges. Both are in pixels. The bench prints the accuracy from Hough lines. [bench vp]
 const MAX_DISTANCE: f64 = 1.5;
 const MAX_GAP: f64 = 6.0;
+/// Minimum length of a piece of a line, as a share of half the image's diagonal and in pixels. Shorter pieces have no
+/// reliable direction. [convention]
+const MIN_LENGTH_SHARE: f64 = 0.02;
+const MIN_LENGTH: f64 = 8.0;
 
 /// A line `cos(theta) x + sin(theta) y = rho`, where x and y are pixels relative to the image centre, and `theta` is
 /// in `[0, pi)`.
@@ -104,7 +108,7 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
 pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, job: Job) -> Result<Vec<Segment>> {
     let centre = DVec2::new(gradients.width as f64, gradients.height as f64) / 2.0;
     let min_agreement = (2.0 * band).max(5f64.to_radians()).cos();
-    let min_length = (0.02 * centre.length()).max(8.0);
+    let min_length = (MIN_LENGTH_SHARE * centre.length()).max(MIN_LENGTH);
     let mut taken = try_vec(edges.len(), false)?;
     let mut segments = Vec::new();
     for (done, peak) in peaks.iter().enumerate() {

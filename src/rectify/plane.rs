@@ -15,6 +15,10 @@ const MAX_PIXELS: usize = 1 << 18;
 /// small as the least error that directions are assumed to have, 0.2°, and the plane could face either way. At 0.05, a
 /// ceiling 1 m above the camera is 20 m away. [convention]
 const MIN_INCIDENCE: f64 = 0.02;
+/// A plane is a ceiling if at most this share of its rays points down: a few wrong pixels of the mask. [convention]
+const MAX_CEILING_SHARE: f64 = 0.02;
+/// Factor that prefers a ceiling among planes that agree with the mask about equally well. [convention]
+const CEILING_PREFERENCE: f64 = 1.5;
 
 /// A plane at distance 1 from the camera, parallel to two room axes.
 #[derive(Clone, Debug)]
@@ -142,7 +146,7 @@ fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
         let lines = 1.0 - share[third] + share[i].min(share[j]);
         // Favour a ceiling. The vertical axis points down, so the mask is on a ceiling if nearly all its rays point
         // against this axis.
-        let ceiling = if third == VERTICAL && share_ahead < 0.02 { 1.5 } else { 1.0 };
+        let ceiling = if third == VERTICAL && share_ahead < MAX_CEILING_SHARE { CEILING_PREFERENCE } else { 1.0 };
         one_sided.powi(4) * lines * ceiling
     };
     let pairs = [[HORIZONTAL_A, HORIZONTAL_B], [HORIZONTAL_A, VERTICAL], [VERTICAL, HORIZONTAL_B]];

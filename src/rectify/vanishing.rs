@@ -18,6 +18,9 @@ const MAX_LINES: usize = 2500;
 /// Maximum standard deviation of a direction in radians; directions with a larger one are rejected.
 /// [bench vp:panoramas]
 const MAX_ERROR: f64 = 0.2;
+/// Two estimates are of one direction if the cosine of the angle between them is at least this: 26°. It lies between the
+/// 90° of two axes and the errors of a direction, of which [`MAX_ERROR`] is the largest. [convention]
+const MAX_EQUAL_COSINE: f64 = 0.9;
 
 /// Standard deviations of the priors with which directions are refined. `SQUARENESS`: deviation from a right angle of
 /// the angle between two room directions, in radians. `FOCAL_SPREAD`: error of the logarithm of the focal length.
@@ -206,7 +209,7 @@ fn refine_freely(lines: &[WeightedLine], axes: &[DVec3], focal: f64) -> Vec<Dire
     let mut kept: Vec<DirectionEstimate> = Vec::new();
     for found in squared {
         let r = &found.expected;
-        let apart = kept.iter().all(|k| k.expected.direction.dot(r.direction).abs() < 0.9);
+        let apart = kept.iter().all(|k| k.expected.direction.dot(r.direction).abs() < MAX_EQUAL_COSINE);
         if apart && r.error() < MAX_ERROR {
             kept.push(found);
         }

@@ -149,7 +149,7 @@ fn a_stroke_on_a_wrong_region_mends_it() {
 /// A banner below the ceiling has a colour that no stroke has touched: `unseen` must mark it, whichever class it is
 /// assigned to.
 #[test]
-fn what_no_stroke_has_shown_is_told() {
+fn regions_unlike_all_strokes_are_reported() {
     let (mut features, faces) = room();
     let is_banner = |i: usize| (100..220).contains(&(i % WIDTH)) && (100..116).contains(&(i / WIDTH));
     for i in (0..faces.len()).filter(|&i| is_banner(i)) {
@@ -428,7 +428,7 @@ fn the_largest_strokes_and_many_of_them_are_as_the_few() {
 }
 
 #[test]
-fn features_of_one_bit_are_told_apart() {
+fn features_of_one_bit_are_distinguished() {
     let (features, faces) = room();
     let is_ceiling = |i: usize| faces[i] == 0 || faces[i] == 5;
     // One feature is the class itself; the others are a lightness threshold and a checkerboard.

@@ -35,6 +35,9 @@ pub struct Guide<'a> {
 /// Maximum number of channels of all guides together. With the up to four channels of an artwork, they fill the 64
 /// channels of an image.
 pub const MAX_CHANNELS: usize = 60;
+/// A channel is flat if its values span at most this range: its contrast is left unchanged, because the ratio of two small
+/// ranges is mostly noise. [convention: about 5 of 255 levels]
+const FLAT_RANGE: f32 = 0.02;
 
 /// Largest side of a patch of guides in pixels: the largest value of `Params::patch`.
 pub(super) const MAX_PATCH: usize = 33;
@@ -125,7 +128,7 @@ fn match_channel(source: &mut Image, target: &Image, channel: usize, strength: f
     };
     let ((low, range), (new_low, new_range)) = (ends(source), ends(target));
     // Leave the contrast of nearly flat channels unchanged.
-    let gain = if range > 0.02 { new_range / range } else { 1.0 };
+    let gain = if range > FLAT_RANGE { new_range / range } else { 1.0 };
     let channels = source.channels;
     for v in source.data.iter_mut().skip(channel).step_by(channels) {
         let matched = ((*v - low) * gain + new_low).clamp(0.0, 1.0);

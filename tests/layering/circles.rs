@@ -35,7 +35,7 @@ pub fn folder_circles(sources: &[(String, String)]) -> Vec<Vec<String>> {
         for to in used {
             let (a, b): (Vec<&str>, Vec<&str>) = (from.split("::").collect(), to.split("::").collect());
             let common = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
-            // The module of the folder itself, `mod.rs`, is none of its children.
+            // The module of the folder itself, `mod.rs`, is not one of its children.
             if common < a.len() && common < b.len() {
                 let folder = folders.entry(a[..common].join("::")).or_default();
                 let [child, other] = [a, b].map(|path| path[..=common].join("::"));

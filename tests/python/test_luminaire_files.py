@@ -58,7 +58,7 @@ class LuminaireFiles(Case):
                         for c, gamma in ((0, 0), (77, 33), (190, 80), (300, 95)):
                             self.assertAlmostEqual(other.intensity(c, gamma), lamp.intensity(c, gamma), places=6)
 
-    def test_formats_are_told_by_content_and_variants_by_name(self):
+    def test_formats_are_recognised_by_content_and_variants_by_name(self):
         path = self.convert(ies(), "gldf")
         wrong = self.folder / "lamp.ies"
         wrong.write_bytes(path.read_bytes())

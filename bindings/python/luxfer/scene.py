@@ -259,7 +259,7 @@ class Scene(Handle):
         self._call("add_pendants", lamp, place, len(tops), diameter, luminance, mesh, material)
         return mesh.value, material.value
 
-    # -- what it holds
+    # -- contents
 
     @property
     def counts(self) -> SceneCounts:

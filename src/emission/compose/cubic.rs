@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn beside_bright_lamps_nothing_is_darker_than_dark_and_what_is_no_number_is_told() {
+    fn beside_bright_lamps_nothing_is_darker_than_dark_and_values_that_are_no_numbers_are_reported() {
         let edge = Image::from_fn(12, 4, |x, _| [if x < 6 { 1000.0 } else { 1.0 }; 3]).unwrap();
         for i in 0..60 {
             let value = colour(&edge, DVec2::new(3.0 + 0.1 * f64::from(i), 2.2)).unwrap();

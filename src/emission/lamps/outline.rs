@@ -21,6 +21,8 @@ const TOLERANCE: f64 = 0.1;
 /// Like `TOLERANCE`, but for outlines along the corners of texels. Such an outline is a staircase; this tolerance turns
 /// it into a straight line. It is used for narrow lamps, and if every texel is either fully lit or unlit. [rounding]
 const STAIRCASE_TOLERANCE: f64 = 1.0;
+/// The same for lamps a few texels wide, as a share of their width: a larger tolerance could remove a side. [rounding]
+const NARROW_TOLERANCE: f64 = 0.3;
 /// An outline runs along the corners of texels if the lamp is at most this many texels wide. An outline between texel
 /// centres would enclose only half of a single texel. [rounding]
 const MAX_NARROW_WIDTH: f64 = 2.0;
@@ -126,7 +128,7 @@ impl Ring {
 /// Tolerance, in texels, for simplifying an outline along the corners of texels. `narrow` is the width or height of the
 /// lamp in texels, whichever is smaller.
 pub fn staircase(narrow: f64) -> f64 {
-    STAIRCASE_TOLERANCE.min(0.3 * narrow)
+    STAIRCASE_TOLERANCE.min(NARROW_TOLERANCE * narrow)
 }
 
 /// The texel diagonally ahead of a walk that is at the texel corner `at` and moves in direction `heading`: the texel on

@@ -33,7 +33,7 @@ pub struct BlockPixel {
 }
 
 impl BlockPixel {
-    /// Derives the seed of the pixel's paths in one replication from `seed`, the seed of the image.
+    /// Describes a pixel. Its `seed`, which depends on the replication, is derived from the seed of the image.
     pub fn new(pixel: usize, at: [usize; 2], length: PathLength, seed: u64, replication: u32) -> Self {
         Self { pixel, at, length, seed: seed_of(seed, at, replication) }
     }

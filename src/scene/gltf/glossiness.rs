@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dielectrics_and_metals_are_told_apart() {
+    fn dielectrics_and_metals_are_distinguished() {
         let (paint, gold) = (Vec3::new(0.5, 0.2, 0.1), Vec3::new(1.0, 0.77, 0.34));
         let (base, metallic) = convert(paint, Vec3::splat(DIELECTRIC));
         assert!(metallic < 1e-3 && (base - paint).abs().max_element() < 1e-3, "{base} {metallic}");

@@ -280,7 +280,7 @@ fn without_strokes_and_without_lamps_the_error_asks_for_strokes() {
 }
 
 #[test]
-fn a_lamp_in_a_row_with_others_beyond_the_plane_is_told_apart_from_a_window() {
+fn a_lamp_in_a_row_with_others_beyond_the_plane_is_distinguished_from_a_window() {
     // The plane's mask ends at y = 50, as if the layout had placed a wall too near. Two bright regions of the
     // ceiling lie outside the mask: a lamp below the first lamp, and a tall window.
     let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();

@@ -23,7 +23,7 @@ MIN_SCORE = 0.2
 #: A floor has at least this share of the ceiling's level area. [convention]
 MIN_FLOOR_SHARE = 0.3
 #: Rays that look for a surface around a point reach this far, in metres. [convention]
-SOLID_REACH = 0.5
+MAX_SOLID_DISTANCE = 0.5
 UP = np.array([0.0, 1.0, 0.0])
 
 
@@ -90,7 +90,7 @@ class Room:
         object, and nothing is above them within the clearance in metres."""
         start = np.asarray(points, float).reshape(-1, 3)
         distance, leaves = self._cast(start, UP)
-        inside = leaves & (distance < SOLID_REACH)
+        inside = leaves & (distance < MAX_SOLID_DISTANCE)
         below, _ = self._cast(start, -UP)
         return np.isfinite(distance) & np.isfinite(below) & ~inside & (distance >= clearance)
 

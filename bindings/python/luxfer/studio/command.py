@@ -47,7 +47,7 @@ def parser() -> argparse.ArgumentParser:
     )
     out.add_argument("--port", type=port, default=PORT, help=f"default {PORT}, or the next free one; 0: any")
     out.add_argument(
-        "--state", type=Path, default=None, help=f"folder for what has to survive; default {state_folder()}"
+        "--state", type=Path, default=None, help=f"folder for files that the next start needs; default {state_folder()}"
     )
     out.add_argument("--no-browser", action="store_true", help="only print the address")
     return out
