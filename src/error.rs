@@ -91,7 +91,7 @@ impl Error {
         Self::new(ErrorKind::Cancelled, "the job was cancelled")
     }
 
-    /// Puts the place of the error before the message: `texture 3: the file is truncated`.
+    /// Returns the error with `place` and a colon before its message: `texture 3: the file is truncated`.
     pub fn context(self, place: impl fmt::Display) -> Self {
         Self { message: format!("{place}: {}", self.message), ..self }
     }

@@ -21,7 +21,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Creates a pool of `num_threads` threads; 0 = one per core that is available to this process.
+    /// Creates a pool of `num_threads` threads; 0 stands for one thread per core that is available to this process.
     pub fn new(num_threads: usize) -> Result<Self> {
         let cores = thread::available_parallelism().map_or(1, |n| n.get());
         let count = if num_threads == 0 { cores } else { num_threads };
@@ -71,7 +71,7 @@ struct Queued<W, T> {
 
 enum Progress<W, T> {
     Waiting(W),
-    /// A worker runs the closure, or the closure was dropped.
+    /// A worker has taken the closure and runs it, or `result` has dropped the closure.
     Begun,
     Finished(T),
 }
@@ -107,14 +107,15 @@ impl<W: FnOnce() -> T, T> Queued<W, T> {
 /// cancel request must be answered.
 const CANCEL_INTERVAL: Duration = Duration::from_millis(20);
 
-/// Pools for short work that must not wait behind long work in the main pool. Each run has a pool to itself, with
-/// `num_threads` threads.
+/// Pools for short work that must not wait behind long work in the main pool. Each call of [`run`](Self::run) uses a
+/// pool of `num_threads` threads that no other call uses at the same time.
 pub struct ShortTaskPools {
     num_threads: usize,
     idle: Mutex<Vec<Pool>>,
 }
 
-/// Largest number of idle pools to keep: enough for the few threads of a host that call at the same time.
+/// Maximum number of idle pools to keep. It suffices for the few threads of a host that call the library at the same
+/// time.
 const MAX_IDLE: usize = 4;
 
 impl ShortTaskPools {
@@ -192,8 +193,9 @@ pub fn for_rows<T: Send>(
     })
 }
 
-/// Calls `work(first, items)` for every run of `length` items, in parallel; `first` is the index of the run's first
-/// item, and the last run may be shorter. Checks for cancellation before each run, but reports no progress.
+/// Divides `data` into runs of `length` consecutive items and calls `work(first, items)` for every run, in parallel.
+/// `first` is the index of the run's first item; the last run may be shorter. Checks for cancellation before each run,
+/// but reports no progress.
 pub fn for_runs<T: Send>(data: &mut [T], length: usize, job: Job, work: impl Fn(usize, &mut [T]) + Sync) -> Result<()> {
     for_runs_dyn(data, length, job, &work)
 }
@@ -211,8 +213,8 @@ fn for_runs_dyn<T: Send>(
     })
 }
 
-/// Like [`for_rows`], with scratch memory: calls `work(scratch, row, pixels)`. Rows that one thread computes one after
-/// the other share the memory that `new_scratch` allocates, so `work` must reset it.
+/// Like [`for_rows`], with scratch memory: calls `work(scratch, row, pixels)`. One thread computes several rows one
+/// after the other with the same memory, which `new_scratch` allocates. `work` must therefore reset `scratch`.
 pub fn for_rows_with<T: Send, S>(
     data: &mut [T],
     row_len: usize,
@@ -304,7 +306,7 @@ pub fn sort<T: Ord + Copy + Send>(data: &mut [T], job: Job) -> Result<()> {
         return Ok(());
     }
     let mut middle = partition(data, job)?;
-    // Halve the data exactly if the pivot was far from the median, so that the recursion stays shallow.
+    // If the pivot was far from the median, halve the data exactly instead, so that the recursion stays shallow.
     if middle.min(data.len() - middle) < data.len() / 16 {
         middle = data.len() / 2;
         data.select_nth_unstable(middle);

@@ -1,8 +1,8 @@
 //! Progress reports of long computations, and requests to cancel them.
 //!
 //! The thread that works and the threads that watch share a [`Monitor`]. The worker reports through a [`Job`], which
-//! stands for a span of the whole progress bar. A routine thus reports progress from 0 to 1 without knowing which span
-//! its caller gave it.
+//! stands for a span of the whole progress bar. A routine reports progress from 0 to 1 within its job, and need not
+//! know which span its caller gave it.
 
 use crate::error::{Error, ErrorKind, Result};
 use crate::reserve;

@@ -23,7 +23,8 @@ use std::cell::UnsafeCell;
 use std::ptr::null_mut;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Size of the reserve (`BYTES`), and the largest allocation that it serves, in bytes.
+/// Size of the reserve in bytes (`BYTES`), and size in bytes of the largest allocation that the reserve serves
+/// (`MAX_ALLOCATION`).
 const BYTES: usize = 8 << 20;
 const MAX_ALLOCATION: usize = 256 << 10;
 /// Size of a block in bytes; the reserve hands out whole blocks.
@@ -73,7 +74,7 @@ pub fn reserve_capacity<T>(items: &mut Vec<T>, more: usize) -> bool {
 /// Whether the system can allocate this number of bytes now. Call it before code that aborts the process when memory
 /// runs out.
 pub fn can_allocate(bytes: usize) -> bool {
-    // Keep the optimiser from removing the unused allocation, with `black_box`.
+    // `black_box` keeps the optimiser from removing the allocation, which is otherwise unused.
     std::hint::black_box(list::<u8>(bytes)).is_some()
 }
 

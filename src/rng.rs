@@ -17,7 +17,7 @@ pub fn hash(seed: u64, coordinates: &[u64]) -> u64 {
     })
 }
 
-/// A stream of random numbers that starts at a hash of its coordinates.
+/// A stream of random numbers. Its initial state is a hash of a seed and of coordinates, such as a pixel's position.
 #[derive(Clone)]
 pub struct Rng(u64);
 

@@ -1,8 +1,8 @@
 //! Selects the instruction set at run time, and compiles loops for each instruction set.
 //!
-//! [`Level::widest`] is the only place that queries the processor; all code with variants for several levels calls it.
-//! Results are equal bit by bit at every level: no variant fuses a multiplication and an addition where the rounding
-//! would differ, and loops keep the order of their sums.
+//! [`Level::widest`] is the only place that asks the processor which level to use; all code with variants for several
+//! levels calls it. Results are equal bit by bit at every level: no variant fuses a multiplication and an addition
+//! where the rounding would differ, and loops keep the order of their sums.
 
 /// Instruction sets, from narrow to wide; each includes all narrower sets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -82,7 +82,7 @@ macro_rules! widest {
 
 pub(crate) use widest;
 
-/// Forces a narrower level than the processor's widest, for tests. The shipped library always uses the widest level.
+/// For tests: forces a narrower level than the processor's widest. The shipped library always uses the widest level.
 #[cfg(test)]
 pub mod forced {
     use super::Level;

@@ -1,8 +1,8 @@
 //! Warnings: reasons to doubt a result, with remedies.
 //!
-//! A warning arises when a number that describes a result (the severity) crosses a limit. Each stage computes its
-//! warnings from its result alone, and a scene computes them from its contents; `warnings.rs` in the folder of the
-//! stage holds the limits. Warnings are not stored.
+//! A warning arises when a number that describes a result (the severity) crosses a limit. A stage computes its warnings
+//! from its result alone, and a scene computes its warnings from its contents. The limits are in the file `warnings.rs`
+//! of the stage's or the scene's folder. Warnings are computed anew at each request and not stored.
 
 use glam::DVec2;
 use std::fmt;

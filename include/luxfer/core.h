@@ -610,8 +610,9 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
 /* ==================================================================================================================
  * Exposures of one view
  *
- * Merges a bracket: photos of one view with different exposures. Photos of lit rooms clip at the lamps, so their
- * colours and luminances are lost; the merged image takes them from the shorter exposures. Pass it on as the photo.
+ * Merges a bracket: photos of one view with different exposures. Photos of lit rooms clip at the lamps, so the colours
+ * and luminances of the lamps are lost; the merged image takes them from the shorter exposures. Use the merged image
+ * as the photo of a transfer.
  *
  * One of the photos is the reference. The merged image has its frame, its scale (the value 1 is its white) and its
  * metadata, so that luxfer_photo_metadata.white_luminance holds for the merged image too. Values above 1 are light

@@ -175,8 +175,9 @@ typedef struct luxfer_lamps_params {
      */
     float row_tolerance;
     /**
-     * 1: solve for a power in each colour channel of a group; all goals must then be given per channel, as by
-     * luxfer_lamps_add_mesh. 0, the default: solve for one power of all channels, which keeps the colour.
+     * 1: solve for one power for each colour channel of a group. All goals must then come from luxfer_lamps_add_mesh,
+     * because luxfer_lamps_add_grid states no channels. 0, the default: solve for one power for all channels of a
+     * group, which keeps the colour.
      */
     uint32_t free_colour;
     /** Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity. */
@@ -221,20 +222,22 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 #define LUXFER_GROUP_EACH 1
 
 /**
- * Lamps in one row form a group: the x coordinates of their centres agree within row_tolerance. If the emission has a
- * texture, the texture coordinate u takes the place of x.
+ * Each row of lamps is a group. The lamps are sorted by the x coordinates of their centres; a new row begins where two
+ * successive lamps differ by more than row_tolerance. If the emission has a texture, the texture coordinate u replaces
+ * x.
  */
 #define LUXFER_GROUP_BY_X 2
 
 /**
- * Lamps in one row form a group: the y coordinates of their centres agree within row_tolerance. If the emission has a
- * texture, the texture coordinate v takes the place of y.
+ * Each row of lamps is a group. The lamps are sorted by the y coordinates of their centres; a new row begins where two
+ * successive lamps differ by more than row_tolerance. If the emission has a texture, the texture coordinate v replaces
+ * y.
  */
 #define LUXFER_GROUP_BY_Y 3
 
 /**
- * Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the emission has a
- * texture, all lamps form one group.
+ * Each row of lamps is a group. The lamps are sorted by the z coordinates of their centres; a new row begins where two
+ * successive lamps differ by more than row_tolerance. If the emission has a texture, all lamps form one group.
  */
 #define LUXFER_GROUP_BY_Z 4
 
@@ -649,7 +652,8 @@ typedef struct luxfer_placement {
     /** Reserved; always 0. */
     uint32_t reserved;
     /**
-     * The placement of the texture on the surface: a 3 x 3 matrix, row by row, as luxfer_importance_respond takes it.
+     * The placement of the texture on the surface: a 3 x 3 matrix, row by row, like the argument placement of
+     * luxfer_importance_respond.
      */
     double placement[9];
     /** Offset of the placement along u and v of the texture, in periods. */
@@ -994,9 +998,10 @@ static inline luxfer_status luxfer_false_colour_params_init(luxfer_false_colour_
 #define LUXFER_UNIT_ILLUMINANCE 1
 
 /**
- * Converts an image to false colours: an image in linear RGB. A source of 1 channel is shown by its values, a linear
- * RGB source by its luminance. Values beyond the range get the colour of its nearer end; NaN becomes grey. params may
- * be NULL for the defaults. The call takes a few milliseconds per megapixel. The caller releases *shown. Any thread.
+ * Shows image in false colours: *shown receives a linear RGB image. An image of 1 channel is shown by its values, a
+ * linear RGB image by its luminance. Values below minimum get the darkest colour, values above maximum the lightest;
+ * NaN becomes grey. params may be NULL for the defaults. The call takes a few milliseconds per megapixel. The caller
+ * releases *shown. Any thread.
  * LUXFER_INVALID_ARGUMENT if the range is empty: maximum is not greater than minimum, or maximum is 0 and the image is
  * black; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -1098,10 +1103,10 @@ luxfer_status luxfer_mix_primaries(luxfer_context *context,
 
 /**
  * Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
- * a wanted radiance, by least squares over the channels. Each array is a linear colour: response is the mean radiance
- * of the target from a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background
- * is the mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any
- * thread.
+ * a wanted radiance, by least squares over the channels. Each array is a linear colour in cd/m² per channel. response
+ * is the mean radiance of the target from a white emission of 1 cd/m², as in the field response of
+ * luxfer_relight_report or luxfer_importance_report if the emission there is white and has 1 cd/m². background is the
+ * mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
  * LUXFER_UNREACHABLE if no channel of response is greater than 0, LUXFER_INVALID_ARGUMENT if a number is not finite.
  */
 luxfer_status luxfer_fit_temperature(luxfer_context *context,
@@ -1128,9 +1133,10 @@ luxfer_status luxfer_preset_get(luxfer_context *context,
  *
  * Finds the bodies of hanging lamps (pendants) in a photo. A lamp is taken as a body of revolution about a vertical
  * axis: a globe, a drum, a cone, or any other profile. The shape of the body is computed from the camera and the
- * outline of the lamp in a mask. The size is not: a lamp of twice the size at twice the distance has the same outline.
- * The size requires the height of the ceiling and one more length, or the point of the photo where the suspension (the
- * cable or rod on which the lamp hangs) meets the ceiling.
+ * outline of the lamp in a mask. Its size cannot be computed from them, because a lamp of twice the size at twice the
+ * distance has the same outline. The size follows from a known diameter, or from the known distance between two lamps.
+ * It also follows from the height of the ceiling together with the drop of a lamp below the ceiling, or with the point
+ * of the photo where the suspension (the cable or rod on which the lamp hangs) meets the ceiling.
  * ================================================================================================================== */
 
 /**
@@ -1187,8 +1193,9 @@ typedef struct luxfer_pendants_params {
      */
     double known_length;
     /**
-     * Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If you keep the default because
-     * the height is unknown, the unit of all lengths, known_length included, is the true height instead of the metre.
+     * Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If the height is unknown, keep the
+     * default: the library then takes and returns all lengths, known_length included, in units of the true height
+     * instead of metres.
      */
     double ceiling;
     /**
@@ -1319,13 +1326,13 @@ typedef struct luxfer_pendant {
  */
 #define LUXFER_KNOWN_NOTHING 0
 
-/** The distance of the first lamp's top below the ceiling. */
+/** The distance of the first lamp's top below the ceiling; with alike = 0, of every lamp's top. */
 #define LUXFER_KNOWN_DROP 1
 
-/** The largest diameter of a lamp. */
+/** The largest diameter of the body, which is then the same for all lamps, also with alike = 0. */
 #define LUXFER_KNOWN_DIAMETER 2
 
-/** The horizontal distance between the axes of the first two lamps. */
+/** The horizontal distance between the axes of the first two lamps; with alike = 0 it determines no size. */
 #define LUXFER_KNOWN_SPACING 3
 
 /**

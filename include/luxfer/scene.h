@@ -101,8 +101,8 @@ luxfer_status luxfer_scene_export(luxfer_scene *scene,
                                   const char *path);
 
 /**
- * Writes a scene as GLB, as luxfer_scene_export does, through write, a function of the caller, which receives the
- * bytes and the pointer user. Any thread.
+ * Writes the GLB file of luxfer_scene_export without a path: write, a function of the caller, receives the bytes of
+ * the file, and the pointer user. Any thread.
  * LUXFER_IO if the function returns anything but 0; LUXFER_INVALID_ARGUMENT and LUXFER_UNSUPPORTED as for
  * luxfer_scene_export.
  */
@@ -609,7 +609,7 @@ typedef struct luxfer_distribution_report {
 /** EULUMDAT (.ldt). */
 #define LUXFER_DISTRIBUTION_LDT 1
 
-/** ANSI/IES TM-33-18 and TM-33-23 (.xml). Several emitters are added up. TM-33-23 is written. */
+/** ANSI/IES TM-33-18 and TM-33-23 (.xml). The distributions of all emitters are added up. Saved files are TM-33-23. */
 #define LUXFER_DISTRIBUTION_TM33 2
 
 /** GLDF container (.gldf): a product with variants, of which one is read. */
@@ -624,8 +624,9 @@ typedef struct luxfer_distribution_report {
  * id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
  * releases *distribution. Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
- * LUXFER_UNSUPPORTED for photometry of type A, photometry of type B in TM-33 files, photometry that a container only
- * names by an address, and photometry of no luminous quantity;
+ * LUXFER_UNSUPPORTED for photometry of type A, for photometry of type B in TM-33 files, for a GLDF container that
+ * gives only the web address of its photometry, and for files without luminous intensities, for example with radiant
+ * intensities only;
  * LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
  * extension.
  */

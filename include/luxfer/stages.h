@@ -187,10 +187,10 @@ typedef struct luxfer_rectify_report {
     /** Standard deviation of the field distortion; NaN if distortion is NaN. */
     double distortion_error;
     /**
-     * For each axis, the angle between the two other axes minus 90 degrees, in radians. For this field, each of the
-     * two axes is estimated only from the lines that run along it. The value differs from 0 if walls are oblique,
-     * pixels are not square or the principal point is wrong. NaN if one of the two axes has no lines. The vectors of
-     * the field axes are always orthogonal.
+     * For each axis, the angle between the two other axes minus 90 degrees, in radians. For this angle, each of the
+     * two axes is estimated only from the lines that run along that axis; the vectors of the field axes, in contrast,
+     * are always orthogonal. The value differs from 0 if walls are oblique, pixels are not square or the principal
+     * point is wrong. NaN if one of the two axes has no lines.
      */
     double squareness[3];
     /** Standard deviations of the field squareness; NaN where squareness is NaN. */
@@ -819,10 +819,11 @@ typedef struct luxfer_emission_params {
      */
     uint32_t clean_lamps;
     /**
-     * Maximum magnification of the exemplar's pixels, in [1, 1e6]. Pixels with a larger magnification are left out, as
-     * if the photo did not show them. 0, the default: all pixels are used. Unwarping magnifies distant parts of the
-     * plane: the magnification is the number of unwarped pixels per photo pixel, along one side, divided by its
-     * smallest value in the exemplar.
+     * Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
+     * magnifies distant parts of the plane more than near ones. The magnification of a pixel is a length in the
+     * unwarped photo divided by the same length in the photo; the relative magnification is this ratio divided by that
+     * of the least magnified pixel of the exemplar. Pixels beyond the limit are left out, as if the photo did not show
+     * them.
      */
     double max_magnification;
 } luxfer_emission_params;
@@ -888,8 +889,9 @@ typedef struct luxfer_emission_report {
     double law_score;
     /**
      * law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is NaN.
-     * It is negative if the law was chosen although runner_up scores slightly better: LUXFER_LAW_BEST prefers the law
-     * of LUXFER_LAW_CORRELATION, and lattices along the axes of the room.
+     * LUXFER_LAW_BEST prefers two kinds of laws: the one that LUXFER_LAW_CORRELATION would choose, and lattices along
+     * the axes of the room. If it has kept a preferred law although runner_up scores slightly better, the value is
+     * negative.
      */
     double margin;
 } luxfer_emission_report;
@@ -956,9 +958,9 @@ luxfer_status luxfer_emission_set_exemplar(luxfer_emission *emission,
 
 /**
  * Sets the photo, from which the texture takes its full detail, and the homography from unwarped pixels to photo
- * pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). If the rectification has undone a distortion, this is
- * the photo that luxfer_rectify_undistort makes. photo may be NULL: the detail then comes from the unwarped image
- * only. Any thread.
+ * pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). If the rectification has undone a distortion, photo
+ * must be the image that luxfer_rectify_undistort makes from your photo. photo may be NULL: the detail then comes from
+ * the unwarped image only. Any thread.
  */
 luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         luxfer_image *photo,
@@ -1035,8 +1037,9 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
  * ================================================================================================================== */
 
 /**
- * Adds an exemplar whose lights replace lights of the first exemplar according to weights. The images unwarped, light
- * and valid are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
+ * Adds a further exemplar, whose lights are mixed with those of the first one: the image weights states, for each
+ * place of the texture, the share of the lamps that come from the new exemplar. The images unwarped, light and valid
+ * are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
  * luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. Any
  * thread.
  *
@@ -1188,16 +1191,16 @@ typedef struct luxfer_relight_report {
  */
 #define LUXFER_FIT_LEAST_SQUARES 1
 
-/** The light should equal the value. */
+/** The light should equal its target value. */
 #define LUXFER_CONSTRAINT_EQUAL 0
 
 /**
- * The light should be at least the value, for example because a standard requires it on a desk, or because the photo
- * clips this channel.
+ * The light should be at least its target value, for example because a standard requires it on a desk, or because the
+ * photo clips this channel.
  */
 #define LUXFER_CONSTRAINT_AT_LEAST 1
 
-/** The light should be at most the value, for example to limit glare. */
+/** The light should be at most its target value, for example to limit glare. */
 #define LUXFER_CONSTRAINT_AT_MOST 2
 
 /** The target, or its limit, is met. */

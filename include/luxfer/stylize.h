@@ -118,10 +118,10 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
                                       luxfer_image **image);
 
 /**
- * Computes the motion between two frames of a sequence, as luxfer_stylize_set_motion takes it. The parameter guides
- * holds the current frame, previous the frame before it. The image motion has 2 channels: for each pixel of the
- * current frame, the offset x (right) and y (down), in pixels, to the position of the pixel's surface point in the
- * previous frame. It is NaN where the previous frame does not show the point. The caller releases *motion. Any thread.
+ * Computes the motion between two frames of a sequence, for luxfer_stylize_set_motion. The parameter guides holds the
+ * current frame, previous the frame before it. The image motion has 2 channels: for each pixel of the current frame,
+ * the offset x (right) and y (down), in pixels, to the position of the pixel's surface point in the previous frame. It
+ * is NaN where the previous frame does not show the point. The caller releases *motion. Any thread.
  *
  * The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes with
  * the same name, number of vertices and triangle indices count as one object. If several meshes share all three, and
@@ -467,9 +467,9 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
  * the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
  * from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
  * the time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if
- * the artwork changes there. At the border of these pixels, the update fades a step in colour out into the new paint,
- * as luxfer_stylize_start does, but it does not continue strokes across the border anew. The caller releases *job. Any
- * thread.
+ * the artwork changes there. At the border of these pixels, the update lets a step in colour fade out into the new
+ * paint, in the same way as luxfer_stylize_start; unlike luxfer_stylize_start, it does not continue strokes across the
+ * border anew. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
  * with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
  * too.

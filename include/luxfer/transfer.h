@@ -59,8 +59,8 @@ typedef struct luxfer_pattern_params {
     /** Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0. */
     double rotation;
     /**
-     * Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With LUXFER_LAW_FREE, the
-     * pattern has no fixed place: the conditions of luxfer_emission_params.offset then apply.
+     * Shift of the pattern in metres, along u and v after their rotation by the field rotation; each in [-1e6, 1e6];
+     * default 0. With LUXFER_LAW_FREE, the shift must be 0, unless luxfer_emission_params.offset allows another value.
      */
     double offset[2];
     /**
@@ -523,8 +523,9 @@ luxfer_status luxfer_transfer_get_report(luxfer_transfer *transfer,
 
 /**
  * Gets the camera of the photo, and the unwarping of the plane. The camera was found from the lines and the lamps of
- * the photo, or set by luxfer_transfer_use_rectify. If view->undone is not 0, view->to_photo leads into the photo of a
- * lens without distortion; luxfer_rectify_undistort makes this photo, after a rectification with this distortion.
+ * the photo, or set by luxfer_transfer_use_rectify. If view->undone is not 0, view->to_photo leads to pixels of the
+ * undistorted photo. To make this photo, run a luxfer_rectify with luxfer_rectify_params.distortion = view->undone,
+ * then call luxfer_rectify_undistort.
  * size is sizeof *view. Any thread.
  * LUXFER_NOT_READY before the stage VIEW has ended.
  */
@@ -728,9 +729,9 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_DIM_LAMPS 22
 
 /**
- * A texture without any light would differ less from the photo than the synthesised texture does. The severity is the
- * error of this texture; luxfer_emission_report.error is smaller if LUXFER_LAW_BEST has then kept the texture of
- * another law. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
+ * A texture without any light would differ less from the photo than the texture that was synthesised first. The
+ * severity is the error of that first texture. If LUXFER_LAW_BEST has then found a better texture by another law,
+ * luxfer_emission_report.error is smaller than the severity. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
  */
 #define LUXFER_WARNING_NO_PATTERN 23
 
@@ -763,10 +764,10 @@ typedef struct luxfer_warning {
 /**
  * The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows another
  * surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with the exact
- * motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, are compared along
- * the motion; without such guides, and in a preview, this second comparison is left out, and the warning does not
- * occur. The severity is the share of pixels with wrong motion among the pixels that were compared. The warning points
- * to the pixel with the largest error.
+ * motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, of the pixel and of
+ * the end of its motion are compared. Previews, and stylisations without such guides, skip this comparison of guides.
+ * If nothing was compared, the warning does not occur. The severity is the share of pixels with wrong motion among the
+ * pixels that were compared. The warning points to the pixel with the largest error.
  */
 #define LUXFER_WARNING_MOTION_DISAGREES 28
 

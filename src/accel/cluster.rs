@@ -29,8 +29,8 @@ const WINDOW: usize = 2 * SEARCH_RADIUS + 1;
 /// A range of at most this many leaves is processed by one thread; a longer range is divided between threads.
 const SERIAL: usize = 1024;
 const LANES: usize = 8;
-/// Mask of the low bits of a float. The float is half the surface area of the box that encloses two clusters `i` and
-/// `j`. Its low bits are replaced by `i XOR j`, from which cluster `i` recovers the index `j` of its partner.
+/// Mask of the low bits that `i XOR j` replaces in a float. The float is half the surface area of the box that encloses
+/// two clusters `i` and `j`. From these bits, cluster `i` recovers the index `j` of its partner.
 const PARTNER_BITS: u32 = 2 * FEW_CLUSTERS as u32 - 1;
 
 /// Builds the tree over all leaves. There must be at least one leaf.

@@ -36,7 +36,7 @@ pub(super) fn run(source: &Source, accel: &mut Accel, job: Job) -> Result<()> {
     let mut parts: Vec<CostedPart> = cut.par_iter().map(cost_part).collect::<Result<_>>()?;
     let places: HashMap<u32, u32> = cut.iter().enumerate().map(|(i, &node)| (node, i as u32)).collect();
     parts.push(CostedPart::new(source, Tree::ROOT, &places, &parts, job)?);
-    // Write the nodes above the parts first; then the subtrees below them in parallel.
+    // First write the nodes above the parts. Then write the subtrees below these nodes in parallel.
     let choice = Choice { source, parts: &parts, job };
     let mut top = choice.widen((cut.len(), 0), true)?;
     let tasks = std::mem::take(&mut top.deferred);
@@ -95,7 +95,7 @@ impl Source<'_> {
     }
 }
 
-/// A branch of the binary tree: the index of its part, and its index within that part.
+/// A branch (subtree) of the binary tree: the index of its part, and its index within that part.
 type Place = (usize, usize);
 
 /// The wide nodes and packets written for one subtree.

@@ -78,7 +78,7 @@ impl Branch {
     }
 }
 
-/// The branches of one part of the binary tree in breadth-first order, with their costs.
+/// The branches (subtrees) of one part of the binary tree in breadth-first order, with their costs.
 pub(super) struct CostedPart {
     pub branches: Vec<Branch>,
 }

@@ -92,8 +92,8 @@ impl Chunk {
     fn gather(triangles: &[[Vec3; 3]], first: u32) -> Result<Self> {
         let leaves = try_with_capacity(triangles.len())?;
         let mut chunk = Self { leaves, low: Vec3A::INFINITY, high: Vec3A::NEG_INFINITY, dropped: 0 };
-        // Half the surface area of the previous triangle's box. `None` if there is no previous triangle, or if it is
-        // degenerate or already in a pair.
+        // Half the surface area of the previous triangle's box. `None` if there is no previous triangle, or if the
+        // previous triangle is degenerate or already in a pair.
         let mut alone: Option<f32> = None;
         for (i, corners) in triangles.iter().enumerate() {
             if !has_area(corners) {

@@ -43,7 +43,7 @@ impl Packet {
         used.map(move |lane| (self.ids[lane], self.corners.each_ref().map(point(lane))))
     }
 
-    /// Replaces the index of each triangle by the entry of `ids` at that index.
+    /// Renumbers the triangles: the index `i` of a triangle becomes `ids[i]`.
     pub fn renumber(&mut self, ids: &[u32]) {
         self.ids.iter_mut().filter(|id| **id != u32::MAX).for_each(|id| *id = ids[*id as usize]);
     }
@@ -61,7 +61,8 @@ impl Packet {
         }
         // Recompute in `f64` the edge functions whose value is zero. In either precision, the triangle on the other
         // side of the edge obtains the same value with the opposite sign, so no ray slips between the two triangles.
-        // (Lanes whose other two edge functions have opposite signs stay outside.)
+        // (If the other two edge functions of a triangle have opposite signs, the ray misses this triangle in any
+        // case.)
         if L::bits(L::or(L::or(edge[0].eq(zero), edge[1].eq(zero)), edge[2].eq(zero))) != 0 {
             edge = self.settled_edges(ray);
             hit = inside(&edge);
@@ -120,8 +121,8 @@ impl Packet {
     }
 }
 
-/// Computes the three edge functions of each triangle (scaled barycentric coordinates). The sign of each tells on
-/// which side of that edge the ray passes.
+/// Computes the three edge functions of each triangle (scaled barycentric coordinates). The sign of an edge function
+/// tells on which side of its edge the ray passes.
 #[inline(always)]
 fn edges<L: Lanes>(x: &[L; 3], y: &[L; 3]) -> [L; 3] {
     let side = |a: usize, b: usize| x[a].mul(y[b]).sub(y[a].mul(x[b]));

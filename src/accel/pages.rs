@@ -1,4 +1,4 @@
-//! Storage for the large lists of the acceleration structure: allocation that can fail, on huge pages.
+//! Storage for the large lists of the acceleration structure, on huge pages. A lack of memory is returned as an error.
 //!
 //! Rays access the finished structure at random. If the structure is much larger than the address range of the
 //! processor's TLB, each page-table lookup costs as much as the memory access itself. On Linux the structure is

@@ -1,5 +1,5 @@
 //! An acceleration structure for part of the scene: the triangles whose bounding boxes meet a given box. For rays that
-//! stay within that box, it gives the same hits as the structure of the whole scene, in fewer steps.
+//! stay within that box, this structure gives the same hits as the structure of the whole scene, in fewer steps.
 
 use super::node::Node;
 use super::packet::Packet;
@@ -46,7 +46,7 @@ impl Accel {
         (!found.is_empty() && found.len() <= max).then_some(found)
     }
 
-    /// Replaces the index of each triangle by the entry of `ids` at that index.
+    /// Renumbers the triangles: the index `i` of a triangle becomes `ids[i]`.
     fn renumber(&mut self, ids: &[u32]) {
         let mut open = vec![self.root];
         while let Some(child) = open.pop() {

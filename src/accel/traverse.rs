@@ -110,8 +110,8 @@ impl Accel {
         self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
     }
 
-    /// Traverses the tree. It visits the nearest child first or, with `ANY`, the child in the last lane, because later
-    /// lanes are more likely to end the search (`collapse` sorts them).
+    /// Traverses the tree, and visits the nearest child first. With `ANY`, visits the child in the last lane first,
+    /// because later lanes are more likely to end the search (`collapse` sorts the children).
     #[inline(always)]
     fn traverse<L: Lanes, const ANY: bool>(
         &self,

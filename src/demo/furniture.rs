@@ -46,8 +46,8 @@ pub fn chair(b: &mut Builder, at: Vec3, degrees: f32, wood: usize, cloth: usize)
     b.add("Cushion", cloth, moved(cushion, degrees, at));
 }
 
-/// Adds an open shelf with books on every board. Before the rotation, its back is at z = 0. Each book takes one of the
-/// materials `covers` at random.
+/// Adds an open shelf with books on every board. Before the rotation by `degrees`, its back is at z = 0. Each book
+/// takes one of the materials `covers` at random.
 pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usize, covers: &[usize]) {
     /// Depth of the shelf and heights of its boards, in metres. [convention]
     const DEPTH: f32 = 0.30;
@@ -85,7 +85,7 @@ pub fn bookshelf(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usiz
     }
 }
 
-/// Adds a low cupboard with doors. Before the rotation, its back is at z = 0.
+/// Adds a low cupboard with doors. Before the rotation by `degrees`, its back is at z = 0.
 pub fn sideboard(b: &mut Builder, at: Vec3, degrees: f32, width: f32, wood: usize, front: usize) {
     let mut body = Mesh::default();
     block(&mut body, 0.0, 0.12, 0.21, [width, 0.62, 0.42]);
@@ -168,7 +168,7 @@ pub fn plant(b: &mut Builder, foot: Vec3, height: f32, pot: usize, leaves: usize
     b.add("Plant", leaves, crown);
 }
 
-/// Adds a desk with a screen. Before the rotation, its user sits at +z.
+/// Adds a desk with a screen. Before the rotation by `degrees`, its user sits at +z.
 pub fn desk(b: &mut Builder, at: Vec3, degrees: f32, top: usize, dark: usize) {
     let mut board = Mesh::default();
     block(&mut board, 0.0, 0.72, 0.0, [1.6, 0.03, 0.8]);

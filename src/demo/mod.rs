@@ -113,8 +113,8 @@ mod tests {
         let lamps = scene.meshes.iter().find(|m| m.name == "Luminaires").unwrap();
         let lamp = &scene.materials[lamps.material];
         assert_eq!(lamp.emission, grid.emission);
-        // Each centre of the grid lies in a luminaire, and the areas of the emitting triangles sum to those of the
-        // luminaires.
+        // Every centre that the grid states lies in an emitting triangle, and the areas of the emitting triangles sum
+        // to the areas of the grid's luminaires.
         let mut area = 0.0;
         for t in 0..lamps.triangles.len() {
             let [a, b, c] = lamps.corners(t);

@@ -8,7 +8,7 @@ use crate::scene::{Camera, Material, Mesh, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(5.4, 2.7, 9.0);
-/// Side of the ceiling's tiles in metres, and their number along x and z. [convention]
+/// Side of the ceiling's tiles in metres (`TILE`), and number of tiles along x and z (`TILES`). [convention]
 const TILE: f32 = 0.6;
 const TILES: [usize; 2] = [9, 15];
 /// Width and depth in metres of the bars that carry the tiles.

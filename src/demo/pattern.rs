@@ -31,7 +31,7 @@ fn cloud(at: Vec2, cells: u64, seed: u64) -> f32 {
     octave(1) * 0.5 + octave(2) * 0.3 + octave(4) * 0.2
 }
 
-/// Creates a texture from a function that gives the reflectance at each point of the unit square.
+/// Creates a texture from the function `reflectance`, which gives the colour at each point of the unit square.
 fn paint(reflectance: impl Fn(Vec2) -> Vec3) -> Result<Image> {
     Image::from_fn(SIDE, SIDE, |x, y| {
         let at = (Vec2::new(x as f32, y as f32) + 0.5) / SIDE as f32;

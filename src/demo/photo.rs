@@ -30,7 +30,7 @@ const MEDIAN_EXPOSURE: f32 = 0.14;
 pub struct Params {
     pub width: usize,
     pub height: usize,
-    /// Number of paths per pixel.
+    /// Number of paths per pixel of the rendering.
     pub samples: u32,
     pub seed: u64,
 }

@@ -188,8 +188,9 @@ fn left_wall(b: &mut Builder, paints: &Paints) -> Result<()> {
     furniture::sideboard(b, Vec3::new(0.0, 0.0, 2.95), 90.0, 1.7, paints.oak, paints.ceramic);
     furniture::vase(b, Vec3::new(0.22, 0.741, 3.45), 1.1, paints.ceramic);
     let canvas = b.pattern("Painting", pattern::painting()?, Vec2::new(1.1, 0.75), 0.9);
-    // The rows of a texture run down, so start the canvas at its upper left corner as seen from the room. The sheet
-    // then faces the wall (-z × -y = -x), so swap two corners of each triangle to turn it round.
+    // The rows of a texture run down, so start the canvas at its upper left corner as seen from the room. With these
+    // axes the sheet would face the wall (-z × -y = -x), so swap two corners of each triangle to turn its front to the
+    // room.
     let upper_left = Vec3::new(0.031, 2.15, 3.5);
     b.add(
         "Painting",

@@ -1,8 +1,8 @@
 //! Shapes of the demonstration scenes: sheets, boxes and bodies of revolution.
 //!
-//! Texture coordinates of flat shapes are in metres along the surface. Those of round shapes are the share of a turn
-//! about the axis, in `[0, 1]`, and the height in metres above the foot. Round shapes have normals and flat shapes have
-//! none, so the two kinds must not share a mesh.
+//! Texture coordinates of flat shapes are in metres along the surface. Texture coordinates of round shapes are the
+//! share of a turn about the axis, in `[0, 1]`, and the height in metres above the foot. Round shapes have normals and
+//! flat shapes have none, so the two kinds must not share a mesh.
 
 use crate::scene::Mesh;
 use glam::{Mat3, Vec2, Vec3};

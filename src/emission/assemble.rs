@@ -19,7 +19,7 @@ use crate::image::Image;
 use crate::job::Job;
 use glam::Vec3;
 
-/// Renders the whole texture of a composition, and measures it.
+/// Renders the whole texture of a composition, lists its lamps, and computes its statistics and their errors.
 pub fn assemble(
     mut composition: Composition,
     input: &Input,
@@ -69,7 +69,8 @@ pub fn assemble(
     })
 }
 
-/// Computes the statistics of a texture. A lamp counts as whole if it does not touch the border.
+/// Computes the statistics of a texture, with lengths in texels. A lamp counts as whole if it does not touch the
+/// border. `periods` are the periods along x and y in texels ([`Pattern::periods`]).
 pub fn statistics_of(texture: &Image, components: &Components, periods: [Option<f64>; 2]) -> Statistics {
     let (width, height) = (texture.width, texture.height);
     let inside = |c: &Component| c.min.iter().all(|&low| low > 0) && c.max[0] + 1 < width && c.max[1] + 1 < height;

@@ -8,9 +8,9 @@
 const RANGE: [f64; 2] = [0.3, 20.0];
 const STEPS: usize = 400;
 
-/// Prior of the distance, a mixture of log-normal distributions: weight, median in metres, and standard deviation of
-/// the logarithm. The first is for rooms: the ceiling is 2.4 to 3.5 m, the camera 1.2 to 1.7 m above the floor. The
-/// second is for halls. [convention]
+/// Prior of the distance, a mixture of two log-normal distributions. Each has a weight, a median in metres, and a
+/// standard deviation of the logarithm. The first distribution is for rooms with a ceiling 2.4 to 3.5 m above the floor
+/// and a camera 1.2 to 1.7 m above the floor. The second distribution is for halls. [convention]
 const PRIOR: [[f64; 3]; 2] = [[0.8, 1.4, 0.35], [0.2, 4.0, 0.6]];
 
 /// Usual sizes of lamps: longer and shorter side in metres, and the probability of this size. The lamps are panels and

@@ -13,14 +13,14 @@ use glam::DVec2;
 
 /// Measurements of an exemplar, in unwarped pixels.
 pub struct Measurements {
-    /// Medians, over the lamps that the exemplar shows completely (whole lamps), of the longer side and of the shorter
-    /// side. 0 without a whole lamp.
+    /// Medians of the longer side and of the shorter side over the whole lamps: those that the exemplar shows
+    /// completely, or that count as whole. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
-    /// Share of its bounding box that a lamp covers, as a median over the whole lamps: 1 for rectangles along the
+    /// Median, over the whole lamps, of the share of its bounding box that a lamp covers: 1 for rectangles along the
     /// axes, π/4 for discs. 0 without a whole lamp.
     pub lamp_fill: f64,
     /// The shorter period of the lamps' lattice. Without a lattice, the median distance from a whole lamp to the
-    /// nearest other whole lamp; 0 if there are fewer than two.
+    /// nearest other whole lamp, or 0 if there are fewer than two whole lamps.
     pub spacing: f64,
     /// Number of columns of the unwarped image that contain at least one usable pixel. A usable pixel is on the plane,
     /// and not magnified beyond [`Params::max_magnification`].

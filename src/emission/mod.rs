@@ -4,19 +4,21 @@
 //! ```text
 //! unwarped photo + light + valid ─▶ exemplar ─▶ lattice ─▶ quilt ─▶ lamps ─▶ compose ─▶ agreement
 //! ```
-//! 1. [`exemplar`] finds the usable part of the photo, its lights (connected components) and their roles, and reduces
-//!    the image to the working size of the synthesis.
+//! 1. [`exemplar`] finds the usable part of the photo and the lights in it (connected components). It classifies each
+//!    light, for example as a whole lamp or as a lamp that the border cuts, and reduces the image to the working size
+//!    of the synthesis.
 //! 2. [`lattice`] finds the lattice that the lamps lie on, from the autocorrelation of the light mask. [`analysis`]
 //!    compares it with other laws by which the pattern may continue, such as a single row, and chooses one.
-//! 3. [`quilt`] computes metadata (confidence, signed x and y distance to the nearest light), and quilts colour and
-//!    metadata with minimum-error seams. On a lattice, patches are shifted by whole periods only. Patches are chosen so
-//!    that the lit share of the texture stays close to that of the exemplar.
+//! 3. [`quilt`] computes metadata of each pixel (confidence that it is light, signed x and y distance to the nearest
+//!    light), and quilts colour and metadata with minimum-error seams. On a lattice, patches are shifted by whole
+//!    periods only. Patches are chosen so that the lit share of the texture stays close to that of the exemplar.
 //! 4. [`lamps`] finds each lamp of the quilted texture and copies it as a whole, so that no seam cuts it. It also
 //!    measures the outline, kind and colour of each lamp.
 //! 5. [`compose`] plans the positions of lamps and patches, renders the texels from the photo at full resolution, and
 //!    lists the lamps.
-//! 6. [`agreement`] compares the texture's statistics with the exemplar's, and estimates which part of the difference
-//!    is sampling error. If the difference exceeds that of a texture without light, [`other_laws`] tries other laws.
+//! 6. [`agreement`] compares the texture's statistics with the exemplar's, and estimates the sampling error of the
+//!    exemplar's statistics. [`other_laws`] makes textures by other laws if the texture differs more from the
+//!    exemplar than a texture without light would.
 //!
 //! A texture that fits inside the exemplar is copied from it, unless it is to be tileable or centred. Another exception
 //! is an exemplar whose lamps have ragged outlines and lie on a lattice: such lamps are placed and drawn anew.
@@ -30,8 +32,8 @@
 //! - textures of any size, rendered in tiles of a [`Composition`];
 //! - textures blended from several exemplars ([`compose::draw`]).
 //!
-//! Not modelled: lamps that mix the designs of two exemplars; a pattern that continues across the edge between two
-//! planes; and exact edges of crossing lines in tileable textures, where stretching the lattice may displace them.
+//! Not modelled: lamps that mix the designs of two exemplars; and a pattern that continues across the edge between two
+//! planes. In tileable textures, stretching the lattice may displace the edges of lines of light that cross each other.
 
 mod agreement;
 mod analysis;
@@ -75,8 +77,8 @@ use assemble::{assemble, statistics_of};
 use exemplar::{bars, joins, panes};
 use lamps::luminaires;
 
-/// Makes the result of the stage from a texture that the caller supplies. A texel counts as light if any of its
-/// channels is above 0.
+/// Makes the result of emission from a texture that the caller supplies, without any synthesis. A texel counts as light
+/// if any of its channels is above 0.
 ///
 /// Errors: a value that is negative or not finite (`InvalidArgument`); a black texture (`Degenerate`).
 pub fn from_texture(texture: &Image, job: Job) -> Result<Emission> {
@@ -115,7 +117,7 @@ pub fn from_texture(texture: &Image, job: Job) -> Result<Emission> {
 /// Makes an emissive texture of `params.width` × `params.height` texels that continues the lights of the unwarped
 /// photo.
 ///
-/// Errors: a parameter out of range, images of different size; no valid pixel; no light (`Degenerate`).
+/// Errors: a parameter out of range; images of different size; no valid pixel, or no light (`Degenerate`).
 pub fn run(input: &Input, params: &Params, job: Job) -> Result<Emission> {
     blend(input, &[], params, job)
 }
@@ -128,8 +130,8 @@ pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Resu
     blend_analysed(None, input, styles, params, job)
 }
 
-/// Like [`blend`], but reuses the analysis of the first exemplar that [`measure`] has made. Repeats the analysis only
-/// if `measure` had other settings that affect it.
+/// Like [`blend`], but reuses the analysis of the first exemplar that [`measure`] has made. Repeats the analysis if the
+/// size of the input, or a setting that affects the analysis, differs from that of `measure`.
 pub fn blend_measured(
     measured: Measurements,
     input: &Input,

@@ -1,4 +1,5 @@
-//! A second attempt if the first texture clearly differs from the photo: textures by the other laws.
+//! If the first texture clearly differs from the photo, makes textures by other laws, and keeps the best texture. A law
+//! is the rule by which the pattern of lamps continues beyond the photo, such as a lattice or a row.
 //!
 //! The lamps of a photo may suggest a wrong law, for example if bars merge the panes of a skylight, or if the farthest
 //! row of lamps is displaced by blur. The score of a law ([`super::analysis::Choice`]) does not show this, but the
@@ -20,8 +21,11 @@ const OTHER_LAWS: [LawMode; 4] = [LawMode::Lattice, LawMode::Row, LawMode::Whole
 /// Returns the texture that differs least from the photo: `first`, or a texture by another law. Other laws are tried
 /// only if `params` leave the law open, and if the error of `first` exceeds that of a texture without light.
 ///
-/// A texture by another law must also agree with the statistics that were expected of `first`, because each law weights
-/// the photo in its own way, and a law may expect hardly any light. Errors: cancelled; no memory.
+/// The error of a texture by another law is the larger of two differences: from the statistics that this law expects,
+/// and from the statistics that the law of `first` expects. The second difference is needed because each law weights
+/// the parts of the photo in its own way, so that a law may expect hardly any light.
+///
+/// Errors: cancelled; no memory.
 pub fn try_other_laws(first: Emission, input: &Input, params: &Params, job: Job) -> Result<Emission> {
     if !(first.error > UNLIT_ERROR) || params.law != LawMode::Best {
         return Ok(first);
@@ -33,7 +37,7 @@ pub fn try_other_laws(first: Emission, input: &Input, params: &Params, job: Job)
         let part = |share: f64| (k as f64 + share) / OTHER_LAWS.len() as f64;
         let params = Params { law: mode, ..params.clone() };
         let analysis = match Analysis::new(input, &params, job.part(part(0.0), part(0.2))) {
-            // The lights show no period of this kind.
+            // The lights show no law of the type that `mode` demands.
             Err(error) if error.kind == ErrorKind::Degenerate => continue,
             other => other?,
         };

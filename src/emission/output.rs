@@ -31,8 +31,8 @@ pub struct Emission {
     /// shows few whole lamps (`exemplar_lamps`), because cut lamps at the border then have more influence. Without
     /// whole lamps, only the lit share is compared.
     pub error: f64,
-    /// If the texture by the law that the lamps suggest was so wrong that other laws were tried
-    /// ([`super::other_laws`]), the error of that first texture. Otherwise `None`.
+    /// The error of the first texture, made by the law that the lamps suggest, if other laws were tried because of this
+    /// error ([`super::other_laws`]). `None` if no other law was tried.
     pub first_error: Option<f64>,
     /// Sampling error of the exemplar's statistics, which arises because the exemplar shows only a part of its
     /// ceiling. No method can be expected to have a smaller `error`. The estimate is the root mean square relative

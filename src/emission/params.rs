@@ -27,13 +27,13 @@ pub struct Input<'a> {
 /// the caller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LawMode {
-    /// The law that best predicts the lamps of the photo. The one found by autocorrelation is kept unless
-    /// another one scores clearly higher.
+    /// The law that best predicts the lamps of the photo. The law found by autocorrelation is kept unless another law
+    /// scores clearly higher.
     Best,
     /// The law that the autocorrelation of the lights finds with the threshold `min_regularity`.
     Correlation,
-    /// A lattice (for `Row`: a row of lamps). It is the one that the autocorrelation finds or, if it finds none, the
-    /// best of several proposals.
+    /// `Lattice`: a lattice. `Row`: a row of lamps. If the autocorrelation finds a law of this type, this law is taken;
+    /// otherwise the best of several proposals of this type.
     Lattice,
     Row,
     /// The exemplar repeats as a whole.
@@ -50,8 +50,8 @@ pub struct Params {
     pub height: usize,
     /// Unwarped pixels per texel, in [`SCALES`].
     pub scale: f64,
-    /// Side of a patch in pixels of the working size (see `working_side`), in `[0, 65536]`. 0 chooses it from the
-    /// period of the lights or, without a lattice, from the size of the exemplar.
+    /// Side of a patch in pixels of the working size (see `working_side`), in `[0, 65536]`. If 0, the side is chosen
+    /// from the period of the lights or, without a lattice, from the size of the exemplar.
     pub block: usize,
     /// Number of random patches that are compared for each block of the texture, besides the patches that continue
     /// neighbouring blocks; only for patterns without a lattice. In `[1, 65536]`.
@@ -86,11 +86,11 @@ pub struct Params {
     /// meet across the border of the texture only if the pattern has a lattice.
     pub tileable: bool,
     /// Centres the lattice in the texture: a lamp, or the middle between two lamps, lies at the texture's centre, so
-    /// that the border cuts as few lamps as possible. The offset shifts the lattice from there.
+    /// that the border cuts as few lamps as possible. `offset` then shifts the centred lattice.
     pub centred: bool,
     /// Channel value, in `[0, 1]`, at or above which a pixel of the unwarped photo counts as clipped; 0 if no pixel is
-    /// to count as clipped. Clipped parts of a lamp get the colour of its rim. The level should lie below the largest
-    /// 8-bit value, because an unwarped pixel is a mean of clipped and unclipped photo pixels.
+    /// to count as clipped. Clipped parts of a lamp get the colour of its rim. The level should lie below 1, the
+    /// largest value of an 8-bit photo, because an unwarped pixel is a mean of clipped and unclipped photo pixels.
     pub clip_level: f32,
     pub seed: u64,
 }
@@ -145,8 +145,8 @@ impl Params {
 }
 
 impl Input<'_> {
-    /// Checks that the three unwarped images have one size, that `light` and `valid` have one channel, and that the
-    /// homography is finite.
+    /// Checks that the three unwarped images have one size, that `light` and `valid` have one channel, and that the map
+    /// into the photo (homography and lens distortion) is finite.
     pub fn check(&self) -> Result<()> {
         self.unwarped.check_same_size("unwarped", self.light, "light")?;
         self.unwarped.check_same_size("unwarped", self.valid, "valid")?;

@@ -55,10 +55,13 @@ pub struct TexelGrid {
 }
 
 impl Sizing {
-    /// Computes the size of an unwarped pixel on the surface, in metres. `pixel` is this size divided by the distance
-    /// of the photo's camera from the lit plane. `plane_distance` is this distance in metres, or 0. It counts for
-    /// [`Scale::Distance`] only: if it is 0, the distance is estimated from the lamps. The other scales compute the
-    /// distance from the length that they give.
+    /// Computes the size of an unwarped pixel on the surface, in metres.
+    ///
+    /// - `pixel`: this size divided by the distance of the photo's camera from the lit plane.
+    /// - `plane_distance`: the distance of the camera from the lit plane, in metres. Only [`Scale::Distance`] uses it;
+    ///   if it is 0, the distance is estimated from the lamps. The other scales compute the distance from the length
+    ///   that they give.
+    /// - `surface_width`: the width of the surface in metres. Only [`Scale::Across`] uses it.
     pub fn new(
         scale: Scale,
         (pixel, plane_distance): (f64, f64),

@@ -42,7 +42,7 @@ impl Design {
         Self { unwarped: unwarped.unwrap(), light: light.unwrap(), valid: valid.unwrap() }
     }
 
-    /// Marks two corners as invalid, as in a typical unwarped photo.
+    /// Marks the two upper corners as invalid, as in a typical unwarped photo.
     fn with_corners_cut(mut self) -> Self {
         let (w, h) = (self.valid.width as f64, self.valid.height as f64);
         for i in 0..self.valid.data.len() {
@@ -70,7 +70,7 @@ struct Score {
     count_ratio: f64,
     area: f64,
     /// `cut`: number of lamps inside the texture that are smaller than 70 % of the exemplar's smallest lamp. `merged`:
-    /// number of lamps that are larger than 130 % of its largest lamp.
+    /// number of lamps inside the texture that are larger than 130 % of the exemplar's largest lamp.
     cut: usize,
     merged: usize,
     /// Root mean square distance of the lamps from the best-fitting lattice, in cell coordinates: a step of each period
@@ -85,8 +85,8 @@ fn inner(lamps: &[Luminaire], width: usize, height: usize) -> Vec<&Luminaire> {
     lamps.iter().filter(off_border).collect()
 }
 
-/// Scores a texture. `per_area` is the exemplar's number of lamps per area; `areas` holds its smallest, mean and
-/// largest lamp area.
+/// Scores a texture. `per_area` is the exemplar's number of lamps per area. `areas` holds the exemplar's smallest, mean
+/// and largest lamp area. `basis` is the lattice for `phase`; without a lattice, `phase` is 0.
 fn score(result: &Emission, per_area: f64, areas: (f64, f64, f64), basis: Option<[DVec2; 2]>) -> Score {
     let (width, height) = (result.mask.width, result.mask.height);
     let lamps = inner(&result.luminaires, width, height);

@@ -7,8 +7,8 @@ use crate::warning::{Code, Warning, percent};
 /// A warning is given if [`Emission::error`], the relative difference between the statistics of texture and photo,
 /// exceeds this. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.25;
-/// A second warning is given if the lamps lie on no lattice and [`Emission::error`] exceeds this.
-/// [judged on 38 photos]
+/// If the lamps lie on no lattice and [`Emission::error`] exceeds this, a warning says so, whether or not the error
+/// also exceeds `MAX_ERROR`. [judged on 38 photos]
 const MAX_FREE_ERROR: f64 = 0.15;
 /// [`Emission::error`] of a texture without any light, whose lit share differs from the photo's by 100 %. If the error
 /// is larger, the warning says that there is no pattern. [convention]

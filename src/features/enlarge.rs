@@ -25,8 +25,9 @@ pub struct LampsBeyond<'a> {
 
 impl Layout {
     /// Moves the other faces of the room away until the face that carries the lamps contains the regions beyond it.
-    /// Returns the new room and the indices of these regions. `None` if there is no such region, or if a face would
-    /// have to move too far ([`MAX_GROWTH`]).
+    /// Leaves out regions that alone would enlarge the room too much, if `lamps.may_leave_out` allows it. Returns the
+    /// new room and the indices of the regions that it contains. `None` if no region remains, or if a face would have
+    /// to move too far ([`MAX_GROWTH`]).
     pub fn enlarged_for(&self, perspective: &Perspective, lamps: &LampsBeyond) -> Option<(Self, Vec<usize>)> {
         let face = self.face_of(perspective, marked(lamps.mask));
         let max_growth = if lamps.is_uncertain { MAX_GROWTH_UNCERTAIN } else { MAX_GROWTH };

@@ -46,8 +46,9 @@ impl Frustum {
         )))
     }
 
-    /// Normalised device coordinates of a pixel's centre: -1 at the left and top border, 1 at the right and bottom. For
-    /// a lens with distortion, those of the point at which an ideal lens shows what the pixel shows.
+    /// Normalised device coordinates of a pixel's centre: -1 at the left and top border, 1 at the right and bottom. If
+    /// the lens has distortion, they are the coordinates of the point at which an ideal lens would show what the pixel
+    /// shows.
     pub fn ndc(&self, x: usize, y: usize, width: usize, height: usize) -> Vec2 {
         if !self.lens.is_none() {
             let ideal = self.lens.ideal(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));

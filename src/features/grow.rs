@@ -30,8 +30,9 @@ const MIN_PART: f64 = 0.2;
 /// are therefore widened by this number.
 const MARGIN: usize = 3;
 /// Costs are stored as integers from 0 to this maximum, which stands for the gradient `MAX_GRADIENT / CLEARLY` and all
-/// steeper ones. No larger cost is needed. A class owns a pixel only if its cost is below that of `MAX_GRADIENT`, which
-/// is `CLEARLY` times the maximum. So if the other class has the maximum, its cost is clearly larger already.
+/// steeper ones. No larger cost is needed. A class owns a pixel only if its cost is below the cost of the gradient
+/// `MAX_GRADIENT`, which is `CLEARLY` times the maximum. So if the cost of the other class is the maximum, it is
+/// clearly larger already.
 const LEVELS: usize = u8::MAX as usize;
 
 /// The parts of a photo over which strokes have grown.

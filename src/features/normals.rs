@@ -72,8 +72,8 @@ pub fn fit(inverse_depth: &Image, confidence: &Image, frustum: &Frustum, radius:
     let (bands, mut normals) = (bands?, normals?);
     let fits_of = |y: usize| FitRow::of(&bands[y / BAND], y % BAND, width);
 
-    // Neglect the distortion of the lens. At the corners of the photo it changes the derivatives by about three times
-    // its share: with 3 % of barrel distortion by 10 %.
+    // Neglect the distortion of the lens. At the corners of the photo, the relative error of the derivatives is about
+    // three times the distortion: 10 % for a barrel distortion of 3 %.
     let ideal = Frustum { lens: Radial::NONE, ..*frustum };
     let origin = ideal.ray(ideal.ndc(0, 0, width, height));
     let step_x = (frustum.right - frustum.left) / (frustum.near * width as f32);

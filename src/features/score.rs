@@ -17,9 +17,9 @@ pub const MAX_SEGMENTS: usize = 160;
 /// The weight of a segment grows with its length only up to this share of the photo's diagonal, so that a few long
 /// segments do not outweigh all others. [bench features:layouts]
 const MAX_LENGTH: f64 = 0.25;
-/// Distances of a side, in units of the distance to the back wall, at which segments may propose it: far wider than the
-/// sides of rooms in photos (see `MIN_SIDE` of the search). The limits exclude segments near the vanishing point and
-/// near a right angle to the view. [convention]
+/// Segments propose distances of a side of the box. Only distances within this range count, in units of the distance to
+/// the back wall. The range is far wider than that of the sides of rooms in photos (see `MIN_SIDE` of the search). It
+/// excludes segments near the vanishing point and segments near a right angle to the view. [convention]
 const PROPOSED_SIDES: std::ops::Range<f64> = 0.02..20.0;
 /// Two segments propose the same distance of a side if the logarithms of their distances differ by less than this.
 /// [bench features:layouts]
@@ -183,8 +183,8 @@ impl Evidence {
     }
 }
 
-/// Returns the index of the quadrant to which a ray points, and the absolute values of the ray's x and y with its z; a
-/// negative z becomes 0.
+/// Returns the index of the quadrant to which a ray points, and the vector (|x|, |y|, z) of the ray's coordinates x, y
+/// and z; a negative z becomes 0.
 fn quadrant(ray: DVec3) -> (usize, DVec3) {
     let index = usize::from(ray.x >= 0.0) + 2 * usize::from(ray.y >= 0.0);
     (index, DVec3::new(ray.x.abs(), ray.y.abs(), ray.z.max(0.0)))

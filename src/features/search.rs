@@ -41,10 +41,11 @@ const MIN_RATIO: f64 = 1.3;
 const RAYS: usize = 9;
 /// Maximum number of boxes that are refined.
 const STARTS: usize = 6;
-/// The trust in the best box. With `n` segments it is at most `1 - exp(-n / TRUST_SEGMENTS)`, because few segments
-/// agree with many boxes. The share `MIN_TRUST` remains if another box has the same score; the rest grows with the lead
-/// over that box, and half of the rest is reached at a lead of `HALF_LEAD`. The confidence is not calibrated: these
-/// values only let it grow with segments and lead. [convention]
+/// The trust in the best box. With `n` segments, its upper bound is `1 - exp(-n / TRUST_SEGMENTS)`, because few
+/// segments agree with many boxes. The trust is `MIN_TRUST` times this bound if another, clearly different box has the
+/// same score. With the lead of the best box over the other box, the trust rises towards the bound; at a lead of
+/// `HALF_LEAD`, it has risen by half of the difference. The trust is not calibrated: these values only let it grow with
+/// segments and lead. [convention]
 const TRUST_SEGMENTS: f64 = 15.0;
 const MIN_TRUST: f64 = 0.3;
 const HALF_LEAD: f64 = 0.03;

@@ -132,10 +132,10 @@ pub unsafe extern "C" fn luxfer_mix_primaries(
 }
 
 /// Finds the temperature and luminance of the blackbody light with which the mean radiance of a target comes nearest to
-/// a wanted radiance, by least squares over the channels. Each array is a linear colour: response is the mean radiance
-/// of the target from a white emission, as luxfer_relight_get_report or luxfer_importance_respond gives it; background
-/// is the mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any
-/// thread.
+/// a wanted radiance, by least squares over the channels. Each array is a linear colour in cd/m² per channel. response
+/// is the mean radiance of the target from a white emission of 1 cd/m², as in the field response of
+/// luxfer_relight_report or luxfer_importance_report if the emission there is white and has 1 cd/m². background is the
+/// mean radiance of the target from all other lights; target is the wanted radiance. size is sizeof *fit. Any thread.
 /// LUXFER_UNREACHABLE if no channel of response is greater than 0, LUXFER_INVALID_ARGUMENT if a number is not finite.
 /// cbindgen:ptrs-as-arrays=[[response; 3], [background; 3], [target; 3]]
 #[unsafe(no_mangle)]

@@ -28,7 +28,7 @@ pub type luxfer_distribution_format = i32;
 pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
 /// EULUMDAT (.ldt).
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
-/// ANSI/IES TM-33-18 and TM-33-23 (.xml). Several emitters are added up. TM-33-23 is written.
+/// ANSI/IES TM-33-18 and TM-33-23 (.xml). The distributions of all emitters are added up. Saved files are TM-33-23.
 pub const LUXFER_DISTRIBUTION_TM33: luxfer_distribution_format = 2;
 /// GLDF container (.gldf): a product with variants, of which one is read.
 pub const LUXFER_DISTRIBUTION_GLDF: luxfer_distribution_format = 3;
@@ -135,8 +135,9 @@ impl Distribution {
 /// id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
 /// releases *distribution. Any thread.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
-/// LUXFER_UNSUPPORTED for photometry of type A, photometry of type B in TM-33 files, photometry that a container only
-/// names by an address, and photometry of no luminous quantity;
+/// LUXFER_UNSUPPORTED for photometry of type A, for photometry of type B in TM-33 files, for a GLDF container that
+/// gives only the web address of its photometry, and for files without luminous intensities, for example with radiant
+/// intensities only;
 /// LUXFER_NOT_FOUND if a container lacks the variant or a file; LUXFER_INVALID_ARGUMENT if the path has another
 /// extension.
 #[unsafe(no_mangle)]

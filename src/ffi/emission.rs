@@ -107,10 +107,11 @@ pub struct luxfer_emission_params {
     /// drawn with one size and one outline, which stays sharp at any resolution. They lie exactly on their lattice.
     /// This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
     pub clean_lamps: u32,
-    /// Maximum magnification of the exemplar's pixels, in [1, 1e6]. Pixels with a larger magnification are left out, as
-    /// if the photo did not show them. 0, the default: all pixels are used. Unwarping magnifies distant parts of the
-    /// plane: the magnification is the number of unwarped pixels per photo pixel, along one side, divided by its
-    /// smallest value in the exemplar.
+    /// Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
+    /// magnifies distant parts of the plane more than near ones. The magnification of a pixel is a length in the
+    /// unwarped photo divided by the same length in the photo; the relative magnification is this ratio divided by that
+    /// of the least magnified pixel of the exemplar. Pixels beyond the limit are left out, as if the photo did not show
+    /// them.
     pub max_magnification: f64,
 }
 
@@ -208,8 +209,9 @@ pub struct luxfer_emission_report {
     /// whole lamps.
     pub law_score: f64,
     /// law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is NaN.
-    /// It is negative if the law was chosen although runner_up scores slightly better: LUXFER_LAW_BEST prefers the law
-    /// of LUXFER_LAW_CORRELATION, and lattices along the axes of the room.
+    /// LUXFER_LAW_BEST prefers two kinds of laws: the one that LUXFER_LAW_CORRELATION would choose, and lattices along
+    /// the axes of the room. If it has kept a preferred law although runner_up scores slightly better, the value is
+    /// negative.
     pub margin: f64,
 }
 
@@ -420,9 +422,9 @@ pub unsafe extern "C" fn luxfer_emission_set_exemplar(
 }
 
 /// Sets the photo, from which the texture takes its full detail, and the homography from unwarped pixels to photo
-/// pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). If the rectification has undone a distortion, this is
-/// the photo that luxfer_rectify_undistort makes. photo may be NULL: the detail then comes from the unwarped image
-/// only. Any thread.
+/// pixels: 9 doubles row by row (luxfer_rectify_report.to_photo). If the rectification has undone a distortion, photo
+/// must be the image that luxfer_rectify_undistort makes from your photo. photo may be NULL: the detail then comes from
+/// the unwarped image only. Any thread.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_emission_set_photo(
     emission: *mut luxfer_emission,

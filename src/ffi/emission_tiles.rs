@@ -19,8 +19,9 @@ use crate::emission::{Composition, LampList, Tile};
 use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 
-/// Adds an exemplar whose lights replace lights of the first exemplar according to weights. The images unwarped, light
-/// and valid are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
+/// Adds a further exemplar, whose lights are mixed with those of the first one: the image weights states, for each
+/// place of the texture, the share of the lamps that come from the new exemplar. The images unwarped, light and valid
+/// are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
 /// luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. Any
 /// thread.
 ///

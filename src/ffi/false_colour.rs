@@ -78,9 +78,10 @@ impl luxfer_false_colour_params {
     }
 }
 
-/// Converts an image to false colours: an image in linear RGB. A source of 1 channel is shown by its values, a linear
-/// RGB source by its luminance. Values beyond the range get the colour of its nearer end; NaN becomes grey. params may
-/// be NULL for the defaults. The call takes a few milliseconds per megapixel. The caller releases *shown. Any thread.
+/// Shows image in false colours: *shown receives a linear RGB image. An image of 1 channel is shown by its values, a
+/// linear RGB image by its luminance. Values below minimum get the darkest colour, values above maximum the lightest;
+/// NaN becomes grey. params may be NULL for the defaults. The call takes a few milliseconds per megapixel. The caller
+/// releases *shown. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the range is empty: maximum is not greater than minimum, or maximum is 0 and the image is
 /// black; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]

@@ -205,10 +205,10 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
     })
 }
 
-/// Computes the motion between two frames of a sequence, as luxfer_stylize_set_motion takes it. The parameter guides
-/// holds the current frame, previous the frame before it. The image motion has 2 channels: for each pixel of the
-/// current frame, the offset x (right) and y (down), in pixels, to the position of the pixel's surface point in the
-/// previous frame. It is NaN where the previous frame does not show the point. The caller releases *motion. Any thread.
+/// Computes the motion between two frames of a sequence, for luxfer_stylize_set_motion. The parameter guides holds the
+/// current frame, previous the frame before it. The image motion has 2 channels: for each pixel of the current frame,
+/// the offset x (right) and y (down), in pixels, to the position of the pixel's surface point in the previous frame. It
+/// is NaN where the previous frame does not show the point. The caller releases *motion. Any thread.
 ///
 /// The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes with
 /// the same name, number of vertices and triangle indices count as one object. If several meshes share all three, and

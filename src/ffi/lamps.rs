@@ -35,14 +35,16 @@ pub type luxfer_group = i32;
 pub const LUXFER_GROUP_ALL: luxfer_group = 0;
 /// Each lamp is a group of its own.
 pub const LUXFER_GROUP_EACH: luxfer_group = 1;
-/// Lamps in one row form a group: the x coordinates of their centres agree within row_tolerance. If the emission has a
-/// texture, the texture coordinate u takes the place of x.
+/// Each row of lamps is a group. The lamps are sorted by the x coordinates of their centres; a new row begins where two
+/// successive lamps differ by more than row_tolerance. If the emission has a texture, the texture coordinate u replaces
+/// x.
 pub const LUXFER_GROUP_BY_X: luxfer_group = 2;
-/// Lamps in one row form a group: the y coordinates of their centres agree within row_tolerance. If the emission has a
-/// texture, the texture coordinate v takes the place of y.
+/// Each row of lamps is a group. The lamps are sorted by the y coordinates of their centres; a new row begins where two
+/// successive lamps differ by more than row_tolerance. If the emission has a texture, the texture coordinate v replaces
+/// y.
 pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
-/// Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the emission has a
-/// texture, all lamps form one group.
+/// Each row of lamps is a group. The lamps are sorted by the z coordinates of their centres; a new row begins where two
+/// successive lamps differ by more than row_tolerance. If the emission has a texture, all lamps form one group.
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
 /// Lamps of about equal area form a group: in the order of their areas, a new group begins where the area grows by more
 /// than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot, directional) forms one group,
@@ -61,8 +63,9 @@ pub struct luxfer_lamps_params {
     /// coordinates by which the lamps are grouped, in metres or as a texture coordinate, >= 0; default 0.01. A larger
     /// gap starts a new row.
     pub row_tolerance: f32,
-    /// 1: solve for a power in each colour channel of a group; all goals must then be given per channel, as by
-    /// luxfer_lamps_add_mesh. 0, the default: solve for one power of all channels, which keeps the colour.
+    /// 1: solve for one power for each colour channel of a group. All goals must then come from luxfer_lamps_add_mesh,
+    /// because luxfer_lamps_add_grid states no channels. 0, the default: solve for one power for all channels of a
+    /// group, which keeps the colour.
     pub free_colour: u32,
     /// Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity.
     pub max_scale: f64,

@@ -42,8 +42,8 @@ pub struct luxfer_pattern_params {
     pub texel_size: f64,
     /// Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0.
     pub rotation: f64,
-    /// Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With LUXFER_LAW_FREE, the
-    /// pattern has no fixed place: the conditions of luxfer_emission_params.offset then apply.
+    /// Shift of the pattern in metres, along u and v after their rotation by the field rotation; each in [-1e6, 1e6];
+    /// default 0. With LUXFER_LAW_FREE, the shift must be 0, unless luxfer_emission_params.offset allows another value.
     pub offset: [f64; 2],
     /// Minimum distance in metres of lamps from the edge of the surface and from the zones of
     /// luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as the

@@ -2,9 +2,10 @@
 //!
 //! Finds the bodies of hanging lamps (pendants) in a photo. A lamp is taken as a body of revolution about a vertical
 //! axis: a globe, a drum, a cone, or any other profile. The shape of the body is computed from the camera and the
-//! outline of the lamp in a mask. The size is not: a lamp of twice the size at twice the distance has the same outline.
-//! The size requires the height of the ceiling and one more length, or the point of the photo where the suspension (the
-//! cable or rod on which the lamp hangs) meets the ceiling.
+//! outline of the lamp in a mask. Its size cannot be computed from them, because a lamp of twice the size at twice the
+//! distance has the same outline. The size follows from a known diameter, or from the known distance between two lamps.
+//! It also follows from the height of the ceiling together with the drop of a lamp below the ceiling, or with the point
+//! of the photo where the suspension (the cable or rod on which the lamp hangs) meets the ceiling.
 
 use super::context::luxfer_context;
 use super::geometry::list;
@@ -48,11 +49,11 @@ pub type luxfer_known = i32;
 /// No length is known. The points where suspensions meet the ceiling then determine the size, together with the height
 /// of the ceiling. Without such points, each lamp has LUXFER_DOUBT_SIZE.
 pub const LUXFER_KNOWN_NOTHING: luxfer_known = 0;
-/// The distance of the first lamp's top below the ceiling.
+/// The distance of the first lamp's top below the ceiling; with alike = 0, of every lamp's top.
 pub const LUXFER_KNOWN_DROP: luxfer_known = 1;
-/// The largest diameter of a lamp.
+/// The largest diameter of the body, which is then the same for all lamps, also with alike = 0.
 pub const LUXFER_KNOWN_DIAMETER: luxfer_known = 2;
-/// The horizontal distance between the axes of the first two lamps.
+/// The horizontal distance between the axes of the first two lamps; with alike = 0 it determines no size.
 pub const LUXFER_KNOWN_SPACING: luxfer_known = 3;
 
 /// The size is unknown: no length determines it, or its standard deviation exceeds half of it. The fields drop,
@@ -93,8 +94,9 @@ pub struct luxfer_pendants_params {
     /// The known length in metres: in [0, 1e4] for LUXFER_KNOWN_DROP, in [1e-4, 1e4] for a diameter or a spacing. Must
     /// be 0, the default, with LUXFER_KNOWN_NOTHING.
     pub known_length: f64,
-    /// Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If you keep the default because
-    /// the height is unknown, the unit of all lengths, known_length included, is the true height instead of the metre.
+    /// Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If the height is unknown, keep the
+    /// default: the library then takes and returns all lengths, known_length included, in units of the true height
+    /// instead of metres.
     pub ceiling: f64,
     /// Standard deviation in pixels of the x and of the y of each point in the array suspensions of
     /// luxfer_pendants_find, in [0.05, 100]; default 1.

@@ -105,7 +105,8 @@ pub struct luxfer_placement {
     pub struct_size: u32,
     /// Reserved; always 0.
     pub reserved: u32,
-    /// The placement of the texture on the surface: a 3 x 3 matrix, row by row, as luxfer_importance_respond takes it.
+    /// The placement of the texture on the surface: a 3 x 3 matrix, row by row, like the argument placement of
+    /// luxfer_importance_respond.
     pub placement: [f64; 9],
     /// Offset of the placement along u and v of the texture, in periods.
     pub offset: [f64; 2],

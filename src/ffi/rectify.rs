@@ -226,10 +226,10 @@ pub struct luxfer_rectify_report {
     pub distortion: f64,
     /// Standard deviation of the field distortion; NaN if distortion is NaN.
     pub distortion_error: f64,
-    /// For each axis, the angle between the two other axes minus 90 degrees, in radians. For this field, each of the
-    /// two axes is estimated only from the lines that run along it. The value differs from 0 if walls are oblique,
-    /// pixels are not square or the principal point is wrong. NaN if one of the two axes has no lines. The vectors of
-    /// the field axes are always orthogonal.
+    /// For each axis, the angle between the two other axes minus 90 degrees, in radians. For this angle, each of the
+    /// two axes is estimated only from the lines that run along that axis; the vectors of the field axes, in contrast,
+    /// are always orthogonal. The value differs from 0 if walls are oblique, pixels are not square or the principal
+    /// point is wrong. NaN if one of the two axes has no lines.
     pub squareness: [f64; 3],
     /// Standard deviations of the field squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],

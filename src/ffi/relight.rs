@@ -44,12 +44,12 @@ pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.
 pub type luxfer_constraint = i32;
-/// The light should equal the value.
+/// The light should equal its target value.
 pub const LUXFER_CONSTRAINT_EQUAL: luxfer_constraint = 0;
-/// The light should be at least the value, for example because a standard requires it on a desk, or because the photo
-/// clips this channel.
+/// The light should be at least its target value, for example because a standard requires it on a desk, or because the
+/// photo clips this channel.
 pub const LUXFER_CONSTRAINT_AT_LEAST: luxfer_constraint = 1;
-/// The light should be at most the value, for example to limit glare.
+/// The light should be at most its target value, for example to limit glare.
 pub const LUXFER_CONSTRAINT_AT_MOST: luxfer_constraint = 2;
 
 /// Whether the target is met in a colour channel, and if not, the reason: a LUXFER_OUTCOME_ value.

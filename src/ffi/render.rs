@@ -332,10 +332,10 @@ pub unsafe extern "C" fn luxfer_render_get_image(
     })
 }
 
-/// Describes in words what the rendering skips, as luxfer_scene_get_requirements_text does. The text also tells how
-/// many lamps of the scene are hidden, for example by walls, from all surfaces that the paths of the image reach. The
-/// rendering learns this from its first paths. Later paths hardly ever sample these lamps, which does not change the
-/// expected image. Any thread.
+/// Describes in words what the rendering skips in its scene. In addition to the contents of
+/// luxfer_scene_get_requirements_text, the text tells how many lamps of the scene are hidden, for example by walls,
+/// from all surfaces that the paths of the image reach. The rendering learns from its first paths which lamps are
+/// hidden. Later paths hardly ever sample these lamps, which does not change the expected image. Any thread.
 ///
 /// The text has one sentence per line and is zero-terminated UTF-8, truncated to capacity bytes including the zero.
 /// *needed, unless NULL, receives the capacity that the whole text needs. buffer may be NULL if capacity is 0.

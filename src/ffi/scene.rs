@@ -266,8 +266,8 @@ pub unsafe extern "C" fn luxfer_scene_export(scene: *mut luxfer_scene, path: *co
     })
 }
 
-/// Writes a scene as GLB, as luxfer_scene_export does, through write, a function of the caller, which receives the
-/// bytes and the pointer user. Any thread.
+/// Writes the GLB file of luxfer_scene_export without a path: write, a function of the caller, receives the bytes of
+/// the file, and the pointer user. Any thread.
 /// LUXFER_IO if the function returns anything but 0; LUXFER_INVALID_ARGUMENT and LUXFER_UNSUPPORTED as for
 /// luxfer_scene_export.
 #[unsafe(no_mangle)]

@@ -393,9 +393,9 @@ pub unsafe extern "C" fn luxfer_stylize_start(
 /// the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
 /// from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
 /// the time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if
-/// the artwork changes there. At the border of these pixels, the update fades a step in colour out into the new paint,
-/// as luxfer_stylize_start does, but it does not continue strokes across the border anew. The caller releases *job. Any
-/// thread.
+/// the artwork changes there. At the border of these pixels, the update lets a step in colour fade out into the new
+/// paint, in the same way as luxfer_stylize_start; unlike luxfer_stylize_start, it does not continue strokes across the
+/// border anew. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
 /// with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
 /// too.

@@ -319,8 +319,9 @@ pub unsafe extern "C" fn luxfer_transfer_get_report(
 }
 
 /// Gets the camera of the photo, and the unwarping of the plane. The camera was found from the lines and the lamps of
-/// the photo, or set by luxfer_transfer_use_rectify. If view->undone is not 0, view->to_photo leads into the photo of a
-/// lens without distortion; luxfer_rectify_undistort makes this photo, after a rectification with this distortion.
+/// the photo, or set by luxfer_transfer_use_rectify. If view->undone is not 0, view->to_photo leads to pixels of the
+/// undistorted photo. To make this photo, run a luxfer_rectify with luxfer_rectify_params.distortion = view->undone,
+/// then call luxfer_rectify_undistort.
 /// size is sizeof *view. Any thread.
 /// LUXFER_NOT_READY before the stage VIEW has ended.
 #[unsafe(no_mangle)]

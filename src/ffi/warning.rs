@@ -96,9 +96,9 @@ pub const LUXFER_WARNING_NOT_RENDERED: luxfer_warning_code = 21;
 /// that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit. The warning points
 /// to the darkest lamp.
 pub const LUXFER_WARNING_DIM_LAMPS: luxfer_warning_code = 22;
-/// A texture without any light would differ less from the photo than the synthesised texture does. The severity is the
-/// error of this texture; luxfer_emission_report.error is smaller if LUXFER_LAW_BEST has then kept the texture of
-/// another law. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
+/// A texture without any light would differ less from the photo than the texture that was synthesised first. The
+/// severity is the error of that first texture. If LUXFER_LAW_BEST has then found a better texture by another law,
+/// luxfer_emission_report.error is smaller than the severity. This warning replaces LUXFER_WARNING_PATTERN_UNCERTAIN.
 pub const LUXFER_WARNING_NO_PATTERN: luxfer_warning_code = 23;
 /// A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or both; for
 /// the lights, positive strokes. The severity is the expected share of wrong pixels.
@@ -116,10 +116,10 @@ pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
 pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
 /// The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows another
 /// surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with the exact
-/// motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, are compared along
-/// the motion; without such guides, and in a preview, this second comparison is left out, and the warning does not
-/// occur. The severity is the share of pixels with wrong motion among the pixels that were compared. The warning points
-/// to the pixel with the largest error.
+/// motion of their scenes. Otherwise the LUXFER_GUIDE_DATA guides, such as object codes or normals, of the pixel and of
+/// the end of its motion are compared. Previews, and stylisations without such guides, skip this comparison of guides.
+/// If nothing was compared, the warning does not occur. The severity is the share of pixels with wrong motion among the
+/// pixels that were compared. The warning points to the pixel with the largest error.
 pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
 /// The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast shadow if the
 /// painted part of a half-painted picture has no shadow. The new paint there is a guess. The severity is the share of

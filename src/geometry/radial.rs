@@ -7,9 +7,10 @@
 use crate::error::{Error, Result, check_range};
 use glam::{DMat2, DVec2};
 
-/// Range of the coefficient of [`Radial::new`], both for half of the diagonal and for the corner that is farthest from
-/// the principal point. At -1, an ideal lens shows the corner at twice its distance, as a fisheye lens does. Above 1/3,
-/// the map folds over inside the photo; 0.2 keeps the fold 29 % of the distance away from the corner. \[convention\]
+/// Range of the parameter `corner` of [`Radial::new`]. The displacement at the photo corner farthest from the principal
+/// point must lie in this range too. At -1, an ideal lens shows the corner at twice its distance, as a fisheye lens
+/// does. Above 1/3, the map folds over inside the photo; 0.2 keeps the fold 29 % of the distance away from the corner.
+/// \[convention\]
 pub const MIN_CORNER: f64 = -1.0;
 pub const MAX_CORNER: f64 = 0.2;
 
@@ -35,13 +36,15 @@ impl Radial {
     /// The lens that moves points at half of the photo's diagonal outwards by the share `corner` of their distance from
     /// the principal point. `size` is the size of the photo in pixels.
     ///
-    /// Errors: `corner` is out of range, also if it is related to the corner farthest from the principal point.
+    /// Errors: `corner` is outside `[MIN_CORNER, MAX_CORNER]`, or so is the share by which the lens moves the photo
+    /// corner farthest from the principal point.
     pub fn new(corner: f64, centre: DVec2, size: DVec2) -> Result<Self> {
         check_range("distortion", corner, MIN_CORNER, MAX_CORNER)?;
         let half_diagonal = 0.25 * size.length_squared();
         let bend = corner / half_diagonal;
         let farthest = centre.abs().max((size - centre).abs());
-        // The quotient is exactly 1 for a principal point in the photo's centre, so the limits themselves are allowed.
+        // For a principal point in the photo's centre, the factor in parentheses is exactly 1, so the limits of the
+        // range themselves are allowed.
         let at_farthest = corner * (farthest.length_squared() / half_diagonal);
         if !(MIN_CORNER..=MAX_CORNER).contains(&at_farthest) {
             return Err(Error::argument(format!(
@@ -58,7 +61,7 @@ impl Radial {
         self.bend == 0.0
     }
 
-    /// Returns the point at which an ideal lens shows the point that the photo shows at `shown`.
+    /// Returns the pixel at which an ideal lens would show what the photo shows at the pixel `shown`.
     pub fn ideal(&self, shown: DVec2) -> DVec2 {
         if self.is_none() {
             return shown;
@@ -67,9 +70,9 @@ impl Radial {
         self.centre + p * (1.0 - self.bend * p.length_squared())
     }
 
-    /// Returns the pixel of the photo that shows the point that an ideal lens shows at `ideal`: the inverse of
-    /// [`Self::ideal`]. Points that no pixel shows, beyond the fold of a pincushion distortion, are placed outside the
-    /// photo.
+    /// Returns the pixel at which the photo shows what an ideal lens would show at the pixel `ideal`: the inverse of
+    /// [`Self::ideal`]. Beyond the fold of a pincushion distortion, no pixel of the photo shows the same; the result
+    /// then lies outside the photo.
     pub fn shown(&self, ideal: DVec2) -> DVec2 {
         if self.is_none() {
             return ideal;
@@ -128,7 +131,8 @@ mod tests {
     fn corners_move_by_the_coefficient_and_both_maps_are_inverse() {
         for corner in [MIN_CORNER, -0.3, -0.05, -1e-9, 0.0, 1e-9, 0.05, MAX_CORNER] {
             let lens = lens(corner);
-            // The pixel in the corner shows the point that an ideal lens shows at (1 - k) of its distance.
+            // The pixel in the corner shows the point that an ideal lens shows at `1 - corner` times its distance from
+            // the centre.
             assert!((lens.ideal(SIZE) - 0.5 * SIZE - 0.5 * SIZE * (1.0 - corner)).length() < 1e-9);
             for i in 0..=20 {
                 for k in 0..=20 {
@@ -191,7 +195,8 @@ mod tests {
             assert_eq!(e.kind, ErrorKind::InvalidArgument);
             assert!(e.message.contains(&format!("distortion is {bad}; it must lie in [-1, 0.2]")), "{}", e.message);
         }
-        // About a corner of the photo the farthest corner is twice as far away, so the range is a quarter.
+        // If the principal point is a corner of the photo, the farthest corner is twice as far away, so the allowed
+        // range is a quarter.
         assert!(Radial::new(0.049, DVec2::ZERO, SIZE).is_ok() && Radial::new(-0.24, DVec2::ZERO, SIZE).is_ok());
         let e = Radial::new(0.1, DVec2::ZERO, SIZE).unwrap_err();
         assert!(e.message.contains("distortion is 0.1") && e.message.contains("[-0.2500, 0.0500]"), "{}", e.message);

@@ -9,8 +9,8 @@
 //! The light is smoothed along surfaces (`smooth`), because `stylize` would match sampling noise as if it were
 //! texture.
 //!
-//! For sequences, [`motion`] computes the position of each pixel in the previous frame, from the surface points that
-//! the pixels show (`surfaces`).
+//! For sequences, [`motion`] computes where the surface point that a pixel shows was in the previous frame, from the
+//! surface points that the pixels of both frames show (`surfaces`).
 //!
 //! Not modelled: the motion of objects that are seen in a mirror or through a pane. Their pixels get the motion of the
 //! mirror or of the pane itself.

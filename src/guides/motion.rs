@@ -1,5 +1,5 @@
-//! Computes the position of each pixel of a frame in the previous frame. Camera and objects may have moved, and meshes
-//! may have changed their shape, as the skin of an animated figure does.
+//! Computes for each pixel of a frame where its surface point was in the previous frame. Camera and objects may have
+//! moved, and meshes may have changed their shape, like the skin of an animated figure.
 //!
 //! The surface point that a pixel shows is a triangle and a position on it. The vertices of the triangle in the
 //! previous frame give the previous position of the point, exactly. The point was visible if the previous frame shows
@@ -96,8 +96,8 @@ struct Frames<'a> {
 }
 
 impl Frames<'_> {
-    /// Returns the position, in pixels of the previous frame, of the surface point that a pixel shows; `None` if the
-    /// previous frame does not show it.
+    /// Returns the position, in pixels of the previous frame, of the surface point that the pixel (x, y) of this frame
+    /// shows; `None` if the previous frame does not show the point.
     fn previous_place(&self, x: usize, y: usize) -> Option<[f32; 2]> {
         let (now, before) = (self.now, self.before);
         let size = [now.width as f32, now.height as f32];
@@ -148,9 +148,10 @@ impl Surfaces {
         self.points[y as usize * self.width + x as usize].as_ref()
     }
 
-    /// The pixel at this position shows a triangle. Returns the larger of two depths: that of the pixel's centre, and
-    /// that of the triangle's plane at the position itself, if the plane lies in front of the camera there. The two
-    /// differ on a surface seen at a grazing angle. Infinity if the pixel shows no surface.
+    /// Returns a depth of the surface that a frame shows at a position inside a pixel; infinity if the pixel shows no
+    /// surface. It is the larger of two depths: the depth of the surface point at the pixel's centre, and the depth at
+    /// which the plane of this point's triangle meets the ray through the position, if the plane lies in front of the
+    /// camera there. The two depths differ on a surface seen at a grazing angle.
     fn depth_near(&self, [x, y]: [f32; 2]) -> f32 {
         let triangle =
             self.at([x, y]).and_then(|point| Some((point, self.shapes[point.mesh as usize].triangle(point)?)));

@@ -15,8 +15,9 @@ const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
 /// pixel and of the neighbour; m is their mean, plus 2 % of the mean luminance of the image. [bench constants:guides]
 const TOLERANCE: f32 = 0.25;
 
-/// Averages the light over neighbours of the same material, similar normal and similar brightness. Brightness is
-/// compared between means over 5 × 5 pixels, because single pixels are too noisy to distinguish light from shadow.
+/// Averages the light over neighbouring pixels of the same material, similar normal and similar brightness. For this
+/// comparison, the brightness of a pixel is the mean over 5 × 5 pixels, because single pixels are too noisy to
+/// distinguish light from shadow.
 pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job) -> Result<Image> {
     let floor = 0.02 * mean_luminance(light);
     let surface = Surface { normals, material };

@@ -95,9 +95,9 @@ impl Surfaces {
     }
 
     /// For each mesh of this frame, returns the index of its counterpart in another frame: the mesh with the same name,
-    /// number of vertices and triangle indices. If several meshes share all three, such as copies of a chair, the first
-    /// corresponds to the first, and so on. `None` for a mesh without counterpart, and for copies if the other frame
-    /// has another number of them.
+    /// number of vertices and triangle indices. If several meshes agree in all three, such as copies of a chair, they
+    /// correspond in their order. `None` for a mesh without counterpart, and for such copies if the other frame has a
+    /// different number of them.
     pub fn counterparts(&self, other: &Self) -> Vec<Option<u32>> {
         let (here, there) = (self.by_key(), other.by_key());
         let mut found = vec![None; self.shapes.len()];

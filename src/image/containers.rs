@@ -72,8 +72,8 @@ pub fn gif_frame(bytes: &[u8]) -> Option<[usize; 4]> {
     }
 }
 
-/// Finds the first application extension of a GIF that has this name and stands before the first frame. Iterates over
-/// the sub-blocks after the name. `None` if there is no such extension.
+/// Finds the first application extension named `name` that stands before the first frame of a GIF. Iterates over the
+/// extension's sub-blocks after the name. `None` if there is no such extension.
 pub fn gif_extension<'a>(bytes: &'a [u8], name: &[u8; 11]) -> Option<impl Iterator<Item = &'a [u8]> + use<'a>> {
     let table = |flags: u8| if flags & 0x80 != 0 { 3 << ((flags & 7) + 1) } else { 0 };
     let mut rest = bytes.strip_prefix(b"GIF8")?.get(9 + table(*bytes.get(10)?)..)?;

@@ -115,8 +115,8 @@ fn folder_of(file: &Path) -> &Path {
     file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Writes a new file in the folder of `file`, and renames it to `file`. `old` is the metadata of the file that it
-/// replaces, if any. After an error, the new file is removed, and `file` is unchanged.
+/// Writes a new file in the folder of `file`, and renames it to `file`. `old` is the metadata of the file that is
+/// replaced, if there is one. After an error, the new file is removed, and `file` is unchanged.
 fn replace(file: &Path, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     let (path, mut neighbour) = create_neighbour(file, old.is_some())?;
     let written = fill(&mut neighbour, old, bytes);
@@ -150,8 +150,8 @@ fn create_neighbour(file: &Path, is_private: bool) -> io::Result<(PathBuf, File)
     Err(io::ErrorKind::AlreadyExists.into())
 }
 
-/// Writes the content of the new file to disk. `old` is the metadata of the file that it will replace, if any; the new
-/// file gets that mode and owner.
+/// Writes the content of the new file to disk. `old` is the metadata of the file that will be replaced, if there is
+/// one; the new file gets the mode and the owner of that file.
 fn fill(neighbour: &mut File, old: Option<&Metadata>, bytes: &[u8]) -> io::Result<()> {
     if let Some(old) = old {
         system::keep_owner(neighbour, old)?;
@@ -178,7 +178,7 @@ fn is_refusal(e: &io::Error) -> bool {
     matches!(e.kind(), CrossesDevices | PermissionDenied | ReadOnlyFilesystem | ResourceBusy)
 }
 
-/// Overwrites a file in place. A regular file is then cut to the new length.
+/// Overwrites a file in place. If it is a regular file, it is then cut to the new length.
 fn overwrite(path: &Path, bytes: &[u8]) -> io::Result<()> {
     system::check_reader(path)?;
     let mut file = OpenOptions::new().write(true).open(path)?;

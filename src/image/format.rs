@@ -14,8 +14,8 @@ pub enum Format {
     Raster(ImageFormat),
 }
 
-/// Formats that are recognised only to name them in the error message: offset of the signature, its bytes, and the
-/// name.
+/// Formats that cannot be read, but are recognised so that the error message can name them. Each entry holds the offset
+/// of the signature, its bytes, and the name of the format.
 const OTHERS: [(usize, &[u8], &str); 18] = [
     (4, b"ftypavif", "AVIF"),
     (4, b"ftypavis", "AVIF"),

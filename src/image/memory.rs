@@ -17,7 +17,7 @@ use image::ImageFormat;
 /// thousand bytes, those of scanners up to a million. [convention]
 pub const MAX_PROFILE_BYTES: usize = 3 << 20;
 
-/// Returns an error if the system cannot provide this many bytes.
+/// Returns an error if the system cannot provide `bytes` bytes.
 pub fn check(bytes: usize) -> Result<()> {
     if reserve::can_allocate(bytes) { Ok(()) } else { Err(no_memory::<u8>(bytes)) }
 }

@@ -97,8 +97,9 @@ pub fn read_header(path: &Path) -> Result<FileHeader> {
     meta.and_then(|meta| FileHeader::of(&meta.headers)).map_err(|e| e.context(path.display()))
 }
 
-/// Decodes a file and calls `pixel` for each pixel, with its position in the data window and its `f64` values. The
-/// header of the file must equal `header`; otherwise the file is refused before memory is allocated for its pixels.
+/// Decodes a file and calls `pixel` for each pixel of the window, with the pixel's column and row in the window and its
+/// `f64` values. The header of the file must equal `header`; otherwise the file is refused before memory is allocated
+/// for its pixels.
 pub fn decode(bytes: &[u8], header: &FileHeader, mut pixel: impl FnMut([usize; 2], &[f64])) -> Result<()> {
     let headers = headers(bytes)?;
     let found = FileHeader::of(&headers)?;
@@ -125,7 +126,9 @@ pub fn decode(bytes: &[u8], header: &FileHeader, mut pixel: impl FnMut([usize; 2
     Ok(())
 }
 
-/// Encodes a window. `picture` has three channels, and `number([x, y], k)` returns the `k`-th number of a pixel.
+/// Encodes the window that `header` describes. `picture` holds the R, G and B of the window's pixels.
+/// `number([x, y], k)` returns value k of the pixel in column x and row y of the window, with k from 0 to
+/// `header.numbers - 1`.
 pub fn encode(header: &FileHeader, picture: &Image, number: impl Fn([usize; 2], usize) -> f64) -> Result<Vec<u8>> {
     let text = |text: &str| ex::Text::from_slice_unchecked(text.as_bytes());
     let [width, height] = header.size;

@@ -25,7 +25,7 @@ const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
 /// short to contain it even at the maximum compression ratio.
 const MAX_TILE_BYTES: usize = 64 << 20;
 
-// By value, as `map_err` passes it.
+// The error is taken by value, because `map_err` passes it by value.
 #[allow(clippy::needless_pass_by_value)]
 pub(super) fn broken(e: exr::error::Error) -> Error {
     use exr::error::Error as Cause;
@@ -87,7 +87,7 @@ fn display(headers: &exr::meta::Headers) -> Result<ex::IntegerBounds> {
     Ok(window)
 }
 
-/// Returns width, height and the largest number of channels, from the headers.
+/// Returns width, height and the largest number of channels of any layer, at most 4, from the headers.
 pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     let headers = headers(bytes)?;
     let size = display(&headers)?.size;
@@ -174,8 +174,9 @@ impl Place {
     }
 }
 
-/// Returns the colour space with the stated chromaticities, or those of Rec.709 if only `neutral` is stated. The
-/// chromaticity `neutral` becomes white; without it, the stated white does. `Unstated` if the file states neither.
+/// Returns the colour space with the stated chromaticities, or with those of Rec.709 if only `neutral` is stated.
+/// Colours of the chromaticity `neutral` become white; without `neutral`, colours of the stated white do. `Unstated` if
+/// the file states neither.
 fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32>>) -> Space {
     let point = |v: ex::Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
     let chromaticities = match stated {

@@ -30,7 +30,8 @@ impl Orientation {
         self.0 >= 5
     }
 
-    /// Whether to mirror the picture left to right, and top to bottom, after the transposition.
+    /// Returns whether to mirror the picture left to right, and whether to mirror it top to bottom. If the picture is
+    /// also transposed, it is mirrored afterwards.
     fn mirrors(self) -> [bool; 2] {
         [matches!(self.0, 2 | 3 | 6 | 7), matches!(self.0, 3 | 4 | 7 | 8)]
     }

@@ -28,7 +28,7 @@ pub(crate) fn prefer_huge<T>(buffer: &[MaybeUninit<T>]) {
 
 /// Returns `len` zeros, or `None` if memory is short. The system provides zeroed memory, and clears each page only
 /// when a thread first writes to it.
-// `layout` is that of exactly `len` numbers.
+// Length and capacity of the vector are equal, because `layout` has room for exactly `len` numbers.
 #[allow(clippy::same_length_and_capacity)]
 pub(crate) fn zeros(len: usize) -> Option<Vec<f32>> {
     let layout = Layout::array::<f32>(len).ok().filter(|layout| layout.size() > 0);

@@ -84,7 +84,7 @@ fn check_frame(bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-// By value, as `map_err` passes it.
+// The error is taken by value, because `map_err` passes it by value.
 #[allow(clippy::needless_pass_by_value)]
 pub(super) fn broken(e: ImageError) -> Error {
     match &e {

@@ -9,7 +9,8 @@ use std::collections::HashMap;
 /// A network with one input, an image. Only the first of its outputs is computed.
 pub struct Network {
     pub(super) nodes: Vec<Node>,
-    /// For each value passed between nodes, its contents if they are known before the run.
+    /// For each value passed between nodes, its contents if they are known before the run, such as weights; otherwise
+    /// `None`.
     pub(super) constants: Vec<Option<Tensor>>,
     pub(super) input: usize,
     pub(super) output: usize,

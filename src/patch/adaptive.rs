@@ -5,10 +5,11 @@
 //! `mean + t (choice - mean)`. The share t is such that the picture has as much fine detail as the exemplar.
 //!
 //! Fine detail is the power of the finest octave: the sum of squares, over a window, of the difference between an image
-//! and its 3 × 3 binomial mean. Let M be this difference for the mean, and D for (choice - mean). The power of the
-//! blend is `Σ|M|² + 2t ΣM·D + t² Σ|D|²`. Equating it with the exemplar's power around the sources of the chosen pixels
-//! gives a quadratic equation for t. Steps that the exemplar lacks make t smaller; texture that the mean loses makes t
-//! greater. The window holds all patches over a pixel, because these patches form the mean.
+//! and its 3 × 3 binomial mean. Let M be this difference for the image of the means, and D for the image of (choice -
+//! mean). The power of the blend is `Σ|M|² + 2t ΣM·D + t² Σ|D|²`. Equating it with the exemplar's power around the
+//! sources of the chosen pixels gives a quadratic equation for t. Steps that the exemplar lacks make t smaller; texture
+//! that the mean loses makes t greater. The window around a pixel holds all patches over the pixel, because these
+//! patches form its mean.
 
 use super::ballot::{Ballot, Candidate, common_offset};
 use crate::error::Result;
@@ -217,12 +218,12 @@ impl Power {
         self.exemplar += other.exemplar;
     }
 
-    /// Returns the greatest share of the choice, in `[0, 1]`, with which the blend has at most the exemplar's power; if
-    /// the blend always has more, the share with which it has least.
+    /// Returns the greatest share of the choice, in `[0, 1]`, for which the power of the blend is at most the
+    /// exemplar's. If the blend has more power at every share, returns the share at which its power is smallest.
     fn share(&self) -> f32 {
         let surplus = self.mean - self.exemplar;
         let root = (self.product * self.product - self.difference * surplus).max(0.0).sqrt();
-        // Where mean and choice have the same fine detail (D = 0), t has no effect on it: keep whole pixels.
+        // Where mean and choice have the same fine detail (D = 0), t does not change the detail: keep whole pixels.
         let share = if self.difference > 0.0 { (root - self.product) / self.difference } else { 1.0 };
         share.clamp(0.0, 1.0) as f32
     }

@@ -76,8 +76,8 @@ impl<'a> Ballot<'a> {
         }
     }
 
-    /// Returns the offset of the candidate whose colour is closest to `mean`; if `by_count`, among the candidates with
-    /// most votes only.
+    /// Returns the offset of the candidate whose colour is closest to `mean`; `None` if there are no candidates. If
+    /// `by_count`, only the candidates with the most votes are compared.
     #[inline]
     pub fn choose(&self, candidates: &[Candidate], at: [usize; 2], mean: &[f32], by_count: bool) -> Option<u32> {
         let count = |b: &Candidate| if by_count { b.count } else { 0 };

@@ -24,8 +24,8 @@ impl Kernel {
         Self(Level::widest())
     }
 
-    /// Returns the sum of squared differences over `rows` rows of `run` samples (a multiple of 8). Stops after the row
-    /// in which the sum reaches `limit`.
+    /// Returns the sum of squared differences over `rows` rows of `run` samples (a multiple of 8). After the row in
+    /// which the sum reaches `limit`, stops and returns the sum so far.
     #[inline]
     pub fn distance(self, a: Patch, b: Patch, run: usize, rows: usize, limit: u32) -> u32 {
         let end = |p: &Patch| (rows - 1) * p.row_len + run;

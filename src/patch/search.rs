@@ -42,7 +42,8 @@ pub struct SearchIteration {
 }
 
 impl Search<'_> {
-    /// Returns the distance between a patch of the query and a patch of the base, with early exit at `limit`.
+    /// Returns the distance between the patch of the query at (`x`, `y`) and the patch of the base at (`match_x`,
+    /// `match_y`). Stops early if the distance reaches `limit`; the result is then at least `limit`.
     #[inline]
     pub fn distance(&self, x: usize, y: usize, match_x: usize, match_y: usize, limit: u32) -> u32 {
         fn at(image: &QuantisedImage, x: usize, y: usize) -> Patch<'_> {

@@ -20,7 +20,7 @@ pub enum VoteMode {
     /// The pixel whose colour is closest to the mean: introduces no new colours, so texture keeps its contrast.
     Nearest,
     /// The pixel placed most often (ties: the one closest to the mean). Where two pieces of the exemplar meet, each
-    /// stays intact up to the seam.
+    /// piece stays intact up to the seam.
     Majority,
     /// A blend of `Plain` and `Majority` that has as much fine detail as the exemplar: see the module `adaptive`.
     Adaptive,
@@ -76,8 +76,8 @@ pub fn origin(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize,
     common_offset(field, patch, [x, y]).map(|offset| unpack(offset.wrapping_add(pack(x, y))))
 }
 
-/// Returns the share of whole exemplar pixels in `picture`. Counted are the pixels for which `wanted` holds and that
-/// have a match. A pixel is whole if its colour is that of an exemplar pixel that a patch places there.
+/// Returns the share of whole exemplar pixels in `picture`, among the pixels that have a match and for which `wanted`
+/// holds. A pixel is whole if its colour is that of an exemplar pixel that a patch places there.
 pub fn whole_share(
     picture: &Image,
     field: &Field,

@@ -7,15 +7,16 @@ use std::time::{SystemTime, UNIX_EPOCH};
 pub struct Moment(pub u64);
 
 impl Moment {
-    /// The present.
+    /// Returns the present moment by the system's clock; 0 if the clock is set to a date before 1970.
     pub fn now() -> Self {
         Self(SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs()))
     }
 
-    /// The date, such as `2024-02-29`. Years begin in March here, so that a leap day is the last day of its year: five
-    /// months have 153 days, whichever month of March, August or January they begin with.
+    /// Returns the date in UTC, such as `2024-02-29`. The computation lets years begin in March, so that a leap day is
+    /// the last day of its year. From March on, the lengths of the months repeat after five months, which together have
+    /// 153 days.
     pub fn date(self) -> String {
-        // 719,468 days lie between 1 March of the year 0 and 1970; 400 years have 146,097 days.
+        // 719,468 days lie between 1 March of the year 0 and 1 January 1970; 400 years have 146,097 days.
         let days = self.0 / 86_400 + 719_468;
         let (era, day) = (days / 146_097, days % 146_097);
         let year = (day - day / 1_460 + day / 36_524 - day / 146_096) / 365;
@@ -27,7 +28,7 @@ impl Moment {
         format!("{year:04}-{month:02}-{day:02}")
     }
 
-    /// The date and the time, such as `2024-02-29T12:34:56Z`.
+    /// Returns the date and the time in UTC, such as `2024-02-29T12:34:56Z`.
     pub fn date_and_time(self) -> String {
         let second = self.0 % 86_400;
         format!("{}T{:02}:{:02}:{:02}Z", self.date(), second / 3600, second / 60 % 60, second % 60)

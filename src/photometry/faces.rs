@@ -98,7 +98,7 @@ impl Faces {
         self.points.len() as u32 - 1
     }
 
-    /// Ends a patch that began with triangle `first`.
+    /// Adds the patch of the triangles from `first` to the last triangle so far.
     fn end_patch(&mut self, first: usize, is_luminous: bool) {
         self.patches.push(FacePatch { triangles: first..self.triangles.len(), is_luminous });
     }
@@ -115,8 +115,9 @@ impl Faces {
         self.end_patch(first, is_luminous);
     }
 
-    /// Adds the side of a box that faces along `normal`, a positive or negative coordinate axis. A vertical side is
-    /// luminous up to its height in `heights`, counted from the face towards γ = 0, and dark beyond.
+    /// Adds the side of a box that faces along `normal`, a positive or negative coordinate axis. Of a vertical side,
+    /// the strip next to the face towards γ = 0 is luminous if `is_luminous` is true; the strip's height is the side's
+    /// entry in `heights`. The remaining part of the side is dark.
     fn add_side(&mut self, size: DVec3, heights: [f64; 4], normal: DVec3, gap: f64, is_luminous: bool) {
         let axis = (0..3).find(|&i| normal[i] != 0.0).unwrap_or(0);
         let [next, last] = [(axis + 1) % 3, (axis + 2) % 3].map(|i| DVec3::AXES[i]);
@@ -127,7 +128,7 @@ impl Faces {
             return self.add_rectangle(centre, half, is_luminous);
         }
         let luminous = heights[axis + if normal[axis] > 0.0 { 0 } else { 2 }];
-        // The luminous part begins at the face towards γ = 0, which is at the largest z.
+        // The luminous strip begins at the face towards γ = 0, which is at the largest z.
         for (low, high, is_luminous) in [(size.z - luminous, size.z, is_luminous), (0.0, size.z - luminous, false)] {
             let share = if size.z > 0.0 { (high - low) / size.z } else { 0.0 };
             let part = half.map(|half| DVec3::new(half.x, half.y, half.z * share));

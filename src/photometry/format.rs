@@ -1,4 +1,4 @@
-//! The formats of luminaire files: which one a file has, and reading and writing each.
+//! The formats of luminaire files. Recognises the format of a file, and reads and writes files of each format.
 
 use super::clock::Moment;
 use super::luminaire::{File, Luminaire};
@@ -19,8 +19,8 @@ pub enum Format {
     Gldf,
 }
 
-/// Separates the name of a variant from a path, such as `lamp.gldf#black`. Only after `.gldf` does `#` have this
-/// meaning.
+/// Splits a path such as `lamp.gldf#black` into the path of the file and the name of a variant. `#` separates the two
+/// only directly after `.gldf`; for any other path, the variant is `None`.
 pub fn split_variant(path: &str) -> (&str, Option<&str>) {
     const MARK: &str = ".gldf#";
     match path.to_ascii_lowercase().find(MARK) {
@@ -33,7 +33,7 @@ impl Format {
     /// Returns the format that a path's extension names.
     ///
     /// # Errors
-    /// `InvalidArgument` if it names none.
+    /// `InvalidArgument` if the extension names no format.
     pub fn of_path(path: &Path) -> Result<Self> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("").to_ascii_lowercase();
         match extension.as_str() {
@@ -63,8 +63,9 @@ impl Format {
         }
     }
 
-    /// Returns the format of a file whose extension names this format. The content decides if it has a mark: files
-    /// often have the extension of another format.
+    /// Returns the format in which to read a file whose extension names this format. ZIP and XML content is recognised
+    /// as GLDF and TM-33 whatever the extension says, because files often have the extension of another format. For any
+    /// other content, the extension decides.
     pub fn confirmed(self, bytes: &[u8]) -> Self {
         match Self::of_content(bytes) {
             found @ (Self::Tm33 | Self::Gldf) => found,
@@ -73,10 +74,10 @@ impl Format {
     }
 
     /// Reads a file of this format. `variant` chooses a variant of a GLDF container by its name, its id or its index
-    /// from 0; without it, the first is read.
+    /// from 0; with `None`, the first variant is read.
     ///
     /// # Errors
-    /// Those of the format; `InvalidArgument` if a variant is chosen in a file that has none.
+    /// Those of the format's reader; `InvalidArgument` if `variant` is given but the format has no variants.
     pub fn read(self, bytes: &[u8], variant: Option<&str>) -> Result<File> {
         if let (Some(variant), true) = (variant, self != Self::Gldf) {
             return Err(Error::argument(format!("the variant is {variant:?}, but only GLDF containers have variants")));

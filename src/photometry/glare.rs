@@ -2,11 +2,12 @@
 //! over the glare sources with their luminance `L` in cd/m², solid angle `ω` in sr and position index `p`; `Lb` is the
 //! background luminance in cd/m².
 //!
-//! Glare sources are the 4-connected regions of at least a threshold luminance. Rating each luminaire by its mean
-//! luminance would underestimate the glare of emissive textures, which are not uniform (Scheir et al. 2017). The
-//! background luminance is the mean over the rest of the image, weighted by the contribution of each pixel to the
-//! illuminance at the eye; a wider image makes this mean more accurate. The position index is Guth's above the line of
-//! sight, and that of Iwata and Tokura (1997) below, as in `evalglare`.
+//! Glare sources are the 4-connected regions of pixels whose luminance is at least a threshold. Rating each luminaire
+//! by its mean luminance would underestimate the glare of emissive textures, which are not uniform (Scheir et al.
+//! 2017). The background luminance is the mean over the remaining pixels, weighted by the contribution of each pixel to
+//! the illuminance at the eye; an image with a wider angle of view makes this mean more accurate. Above the line of
+//! sight, the position index is Guth's; below it, the position index is that of Iwata and Tokura (1997), as in
+//! `evalglare`.
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour, try_vec};
@@ -34,7 +35,7 @@ pub struct Rating {
     pub sources: Vec<Source>,
 }
 
-/// A glare source: a 4-connected region of pixels of at least the threshold luminance.
+/// A glare source: a 4-connected region of pixels whose luminance is at least the threshold.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Source {
     /// Mean luminance `L` in cd/m².

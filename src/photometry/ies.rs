@@ -51,9 +51,9 @@ impl<'a> Words<'a> {
 /// `Format`, with the line number, if the file is malformed; `Unsupported` for photometry of type A.
 pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     let text = Lines::new(bytes)?;
-    // The number after the ballast factor has three meanings. Before LM-63-2002 it is the ballast-lamp factor.
-    // LM-63-2002 reserves it for future use. In LM-63-2019 it states how the file was made ("file generation type",
-    // such as 1.1 for an accredited laboratory).
+    // The number after the ballast factor means different things in different editions. Before LM-63-2002 it is the
+    // ballast-lamp factor. LM-63-2002 reserves it for future use. In LM-63-2019 it states how the file was made ("file
+    // generation type", such as 1.1 for an accredited laboratory).
     let edition = text.numbered().next().map_or("", |(_, line)| line).to_ascii_uppercase();
     let has_lamp_factor = !["IESNA:LM-63-2002", "IES:LM-63-"].iter().any(|later| edition.starts_with(later));
     let mut lines = text.numbered();
@@ -211,13 +211,14 @@ mod tests {
         // The direction with V = 30° and H = 60° is (sin 30° / 2, -sin 60°, cos 30° / 2).
         let (c, gamma) = ((-(0.75f64).sqrt()).atan2(0.25).to_degrees(), (0.75f64.sqrt() / 2.0).acos().to_degrees());
         let at = |c: f64, gamma: f64| l.intensity(c, gamma) / (1.5 * 0.9);
-        // Between the angles, the intensity falls to 0 within 30°, so it is lower by up to 8 % per step of 2.5°.
+        // Between the angles of the file, the intensity falls linearly to 0 within 30°, so it is lower by up to 8 % per
+        // 2.5°.
         assert!((at(c, gamma) - 100.0).abs() < 10.0, "{}", at(c, gamma));
         assert!(at(-c, gamma) < 20.0 && at(0.0, gamma) < 50.0 && at(0.0, 91.0) == 0.0);
         assert_eq!(read(write(&l).unwrap().as_bytes()).unwrap(), l);
     }
 
-    /// A first angle of -0 is 0: no plane is there twice.
+    /// A first angle of -0 counts as 0, so that no plane occurs twice.
     #[test]
     fn a_first_angle_of_minus_zero_is_zero() {
         let want = read(QUARTER.as_bytes()).unwrap();

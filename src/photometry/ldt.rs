@@ -13,7 +13,9 @@ const MAX_SETS: usize = 20;
 /// flux that reaches the working plane directly; a room index stands for the proportions of a room.
 const ROOM_INDICES: usize = 10;
 
-/// Width in millimetres of an upright rectangle along C = 90: sizes in a file are often whole numbers. [convention]
+/// Width along C = 90, in millimetres, that is written for an upright rectangle: such a rectangle has no width, but a
+/// width of 0 would mark a round opening. It is the smallest width that can be stated in whole millimetres, as sizes
+/// often are. [convention]
 const MIN_WIDTH: f64 = 1.0;
 
 struct Rows<'a, I> {
@@ -80,9 +82,9 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     // Read the luminous heights of the four sides, which face towards C = 0, 90, 180 and 270.
     let heights = rows.list(4, "a height of the luminous area", 0.0, 1e7)?;
     let height = heights.iter().copied().fold(0.0, f64::max);
-    // The length of EULUMDAT lies along C = 90, but the first dimension of `Luminaire::size` lies along C = 0: swap
-    // them. A round luminaire has its diameter as length, and a width of 0. `Luminaire::size` marks a diameter by a
-    // negative sign, as IES does.
+    // EULUMDAT states the length along C = 90 first, but the first dimension of `Luminaire::size` lies along C = 0:
+    // swap length and width. EULUMDAT states a round luminaire by a width of 0 and its diameter as the length.
+    // `Luminaire::size` marks a diameter by a negative sign, as IES does.
     let size = if width == 0.0 { [-length, -length, height] } else { [width, length, height] }.map(|mm| mm / 1e3);
     let differ = width > 0.0 && heights.iter().any(|h| *h != height);
     let side_heights = differ.then(|| std::array::from_fn(|i| heights[i] / 1e3));
@@ -161,14 +163,15 @@ fn temperature(text: &str) -> f64 {
     f64::from(kelvin.or(code).unwrap_or(0))
 }
 
-/// Returns the colour rendering index of lamps ("80", "1B/85"); 0 if the text has none. Smaller numbers than 20 are
-/// groups of colour rendering.
+/// Returns the colour rendering index of lamps ("80", "1B/85"); 0 if the text has none. A number below 20 is not an
+/// index but a colour rendering group, as the 1 of "1B".
 fn rendering(text: &str) -> f64 {
     f64::from(numbers(text).find(|n| (20..=100).contains(n)).unwrap_or(0))
 }
 
-/// Returns the angles in degrees and the intensities in candela of all C planes of the full circle. Each plane is a
-/// copy of the stored plane that is symmetric to it. A rotationally symmetric luminaire gets a single plane.
+/// Returns the angles in degrees and the intensities in candela of all C planes of the full circle. Each plane that the
+/// file does not store is a copy of the stored plane that is symmetric to it. A rotationally symmetric luminaire gets a
+/// single plane.
 fn unfold(symmetry: usize, angles: &[f64], stored: &[usize], values: &[f64], gammas: usize) -> (Vec<f64>, Vec<f64>) {
     let single = symmetry == 1;
     let planes = angles.len();
@@ -221,17 +224,19 @@ fn below_horizon(l: &Luminaire) -> Luminaire {
     Luminaire { candela: candela.collect(), ..l.clone() }
 }
 
-/// Returns the length, the width and the height of the opening in millimetres. Only a round opening has no width.
+/// Returns the length, the width and the height of the opening in millimetres. In the file, a width of 0 marks a round
+/// opening, whose diameter is the length.
 fn opening(l: &Luminaire) -> [f64; 3] {
     let [width, length, height] = l.size.map(|m| m * 1e3);
     if width.min(length) < 0.0 && width.max(length) <= 0.0 {
         return [-width.min(length), 0.0, height.abs()];
     }
     if l.opening().is_none() {
-        // A point stays a point: a length alone would be the diameter of a disc.
+        // A luminaire with a length alone is a point. Do not write this length: without a width, it would be the
+        // diameter of a disc.
         return [if width == 0.0 { 0.0 } else { length.abs() }, width.abs(), height.abs()];
     }
-    // Tubes that lie are written as the boxes around them, and upright rectangles with a width.
+    // Write a horizontal tube as the box around it, and give an upright rectangle the width `MIN_WIDTH`.
     let [width, length, height] = l.bounds().map(|m| m * 1e3);
     [length, if length > 0.0 { width.max(MIN_WIDTH) } else { width }, height]
 }
@@ -371,7 +376,7 @@ mod tests {
             ([-0.4, 0.0, 0.1], [-0.4, -0.4, 0.1]),
             ([1.2, -0.025, -0.025], [1.2, 0.025, 0.025]),
             ([-0.025, 1.2, -0.025], [0.025, 1.2, 0.025]),
-            // LM-63-1995 states tubes with one diameter. An upright rectangle has no width.
+            // LM-63-1995 states a tube by its length and one diameter. An upright rectangle has no width.
             ([0.0, 1.2, -0.026], [0.026, 1.2, 0.026]),
             ([1.2, 0.0, -0.026], [1.2, 0.026, 0.026]),
             ([0.0, 1.2, 0.3], [0.001, 1.2, 0.3]),

@@ -63,7 +63,7 @@ impl Luminaire {
         }
     }
 
-    /// Returns the luminous opening; `None` if the luminaire states no size, and so is a point.
+    /// Returns the luminous opening; `None` if the luminaire states no size and therefore is a point.
     pub fn opening(&self) -> Option<Opening> {
         Opening::new(self.size, self.side_heights)
     }

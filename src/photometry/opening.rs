@@ -14,7 +14,7 @@ const CONTACT: f64 = 1e-3;
 /// larger. [convention]
 const MIN_AREA: f64 = 1e-6;
 
-/// The shape of an opening, with sizes in metres.
+/// The shape of a luminous opening, with sizes in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Opening {
     /// A box with these sides along x, y and z; a rectangle if one side is 0. `heights` are the heights of the
@@ -28,8 +28,8 @@ pub enum Opening {
     Ellipsoid(DVec3),
 }
 
-/// A flat face, a parallelogram or an ellipse, that stands for a luminous part of an opening. It holds for one viewing
-/// direction.
+/// A flat face, a parallelogram or an ellipse, that stands for a luminous part of an opening. It looks like that part
+/// from one viewing direction only.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Face {
     pub centre: DVec3,
@@ -95,8 +95,8 @@ impl Opening {
             Self::Box { size, heights } => box_faces(size, heights, direction),
             Self::Cylinder { axis, length, diameters } => cylinder(axis, length, diameters, direction),
             Self::Ellipsoid(diameters) => {
-                // Scaling by the diameters maps a ball to the ellipsoid. Undo this scaling for the direction.
-                // Perpendicular to the result, the ball has a circle as its outline. Scale two perpendicular diameters
+                // Scaling by the diameters maps a ball to the ellipsoid. Undo this scaling for the direction. Seen
+                // along the resulting direction, the outline of the ball is a circle. Scale two perpendicular diameters
                 // of this circle: they become conjugate diameters of the ellipsoid's outline.
                 let of_ball = (direction / diameters).normalize_or(DVec3::Z).any_orthonormal_pair();
                 let sides = [of_ball.0 * diameters, of_ball.1 * diameters];

@@ -7,11 +7,13 @@ use crate::image::try_vec;
 
 /// Maximum number of distributions of a sum. [convention]
 pub const MAX_PARTS: usize = 64;
-/// Width in degrees of the step to darkness where a part's vertical angles end. [convention]
+/// A distribution is dark outside its own vertical angles. In the sum, its intensity falls to 0 within this many
+/// degrees beyond its first and last angle. [convention]
 const STEP: f64 = 1e-3;
 
-/// Adds distributions up. The sum has all angles of its parts, so that it is exact wherever the parts are interpolated
-/// linearly. Its name and manufacturer are those of the first part; its opening is the largest.
+/// Adds distributions up. The sum contains the angles of all parts, so that it is exact wherever the parts are
+/// interpolated linearly. Its name and manufacturer are those of the first part; its opening is that of the part with
+/// the largest opening. Power is added up; colour temperature and colour rendering are kept only if all parts agree.
 ///
 /// # Errors
 /// `Format` if there are too many parts or too many angles.
@@ -59,7 +61,8 @@ pub fn sum(mut parts: Vec<Luminaire>) -> Result<Luminaire> {
     })
 }
 
-/// The vertical angles of a part, and angles a small step outside them, where the part is dark.
+/// The vertical angles of a part, and the angles [`STEP`] below the first and above the last, at which the part is
+/// dark.
 fn vertical(part: &Luminaire) -> impl Iterator<Item = f64> {
     let outside = [part.gammas[0] - STEP, part.gammas[part.gammas.len() - 1] + STEP];
     part.gammas.iter().copied().chain(outside.into_iter().filter(|gamma| (0.0..=180.0).contains(gamma)))
@@ -78,7 +81,7 @@ fn merged(mut angles: Vec<f64>, what: &str) -> Result<Vec<f64>> {
 mod tests {
     use super::*;
 
-    /// A direct part with rotational symmetry and an indirect part with four planes at other angles.
+    /// A direct part with rotational symmetry, and an indirect part with three planes at other angles.
     #[test]
     fn a_sum_has_the_intensities_and_the_flux_of_its_parts() {
         let down = Luminaire { watts: 10.0, ..Luminaire::lambertian("down", 1000.0, [0.3, 0.3, 0.0]) };

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 /// # Errors
 /// `Format` if the angles do not ascend, or if their range implies no symmetry.
 pub fn unfold(angles: &[f64], candela: &[f64], gammas: usize) -> Result<(Vec<f64>, Vec<f64>)> {
-    // An angle of -0 is 0: `total_cmp` would tell them apart.
+    // Turn an angle of -0 into 0, because `total_cmp` would distinguish the two.
     let angles: Vec<f64> = angles.iter().map(|c| c + 0.0).collect();
     let (first, last) = (angles[0], angles[angles.len() - 1]);
     if angles.windows(2).any(|w| w[0] >= w[1]) {
@@ -41,8 +41,8 @@ pub fn unfold(angles: &[f64], candela: &[f64], gammas: usize) -> Result<(Vec<f64
     Ok((all.iter().map(|(c, _)| *c).collect(), all.iter().flat_map(|(_, values)| values.iter().copied()).collect()))
 }
 
-/// Adds the mirror images of the planes about the plane at the angle `about`. A mirror image is left out if it
-/// coincides with a plane that is there: the image of a plane in the plane of symmetry is the plane itself.
+/// Adds the mirror images of the planes about the plane at the angle `about`. A mirror image is left out if `all`
+/// already contains a plane at its angle: a plane at `about`, for example, is its own mirror image.
 fn mirror(all: &mut Vec<(f64, &[f64])>, about: f64) {
     let mut there: Vec<f64> = all.iter().map(|(c, _)| *c).collect();
     there.sort_by(f64::total_cmp);

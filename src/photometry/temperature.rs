@@ -63,8 +63,8 @@ pub fn chromaticity_of(temperature: Temperature) -> DVec2 {
     from_1960(locus(kelvin) + normal * temperature.duv)
 }
 
-/// Returns the linear RGB colour of luminance 1 with this temperature and distance from the locus. A colour out of
-/// gamut has a negative channel; blackbodies are out of gamut below about 1900 K.
+/// Returns the linear RGB colour of luminance 1 with this temperature and distance from the locus. A negative channel
+/// means that the colour is out of gamut, as blackbodies are below about 1900 K.
 pub fn to_rgb(temperature: Temperature) -> DVec3 {
     let xy = chromaticity_of(temperature);
     to_xyz().inverse() * DVec3::new(xy.x / xy.y, 1.0, (1.0 - xy.x - xy.y) / xy.y)

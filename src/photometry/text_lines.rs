@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use std::str::FromStr;
 
-/// Maximum size of a file in bytes: 16 for each of `MAX_VALUES` intensities.
+/// Maximum size of a file in bytes: 16 bytes for each of `MAX_VALUES` intensities.
 pub const MAX_BYTES: usize = 64 << 20;
 /// Maximum number of angles γ and of C planes of a distribution (`MAX_ANGLES`), and maximum number of its intensities
 /// (`MAX_VALUES`).
@@ -45,7 +45,7 @@ pub fn at(line: usize, message: impl std::fmt::Display) -> Error {
     Error::format(format!("line {line}: {message}"))
 }
 
-/// Parses a number; a decimal comma counts as a decimal point.
+/// Parses a number; a decimal comma counts as a decimal point. `what` names the number in errors.
 pub fn number<T: FromStr>(line: usize, word: &str, what: &str) -> Result<T> {
     word.replace(',', ".").parse().map_err(|_| at(line, format_args!("{what} is {word:?}, which is not a number")))
 }

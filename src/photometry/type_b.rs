@@ -1,35 +1,37 @@
 //! Converts type B photometry, in which floodlights are measured, to type C (CIE 121; IES LM-75).
 //!
-//! The polar axis of type B lies across the beam. The vertical angle V turns about this axis; the horizontal angle H is
-//! the angle between the direction and the plane across the axis. The beam's direction, V = H = 0, becomes γ = 0. As
-//! seen from behind the floodlight, V goes up and H to the right; "up" becomes C = 0, and so "right" becomes C = 270;
-//! Radiance has the same axes. A direction with the components x, y and z along C = 0, along C = 90 and along the beam
-//! has `V = atan2(x, z)` and `H = -asin(y)`.
+//! The polar axis of type B lies across the beam. The vertical angle V turns about this axis. The horizontal angle H is
+//! the angle between the direction and the plane perpendicular to this axis. The beam's direction, V = H = 0, becomes
+//! γ = 0. As seen from behind the floodlight, V goes up and H to the right; "up" becomes C = 0, and so "right" becomes
+//! C = 270. The program Radiance uses the same axes. A direction with the components x, y and z along C = 0, along
+//! C = 90 and along the beam has `V = atan2(x, z)` and `H = -asin(y)`.
 //!
 //! Intensities are interpolated linearly in V and H, and 0 outside the measured angles.
 
 use crate::error::{Error, Result};
 use crate::image::try_vec;
 
-/// Steps of γ and C in degrees lie between these; within them, they are the smallest step of the file. [convention]
+/// Minimum and maximum of the step of γ and C, in degrees. Within this range, the step is the smallest step of the
+/// file's angles. [convention]
 const STEPS: [f64; 2] = [0.5, 2.5];
-/// Angles γ are at least this many degrees apart. [convention]
+/// Minimum distance between neighbouring angles γ, in degrees. [convention]
 const MIN_GAP: f64 = 0.1;
 /// Angles that exceed the measured range by at most this many degrees count as the end of the range. [rounding]
 const ROUNDING: f64 = 1e-9;
 
-/// A distribution in type C: angles γ, angles C, and for each plane in turn the intensities.
+/// A distribution in type C: the angles γ, the angles C, and the intensities plane by plane.
 pub type TypeC = (Vec<f64>, Vec<f64>, Vec<f64>);
 
-/// Resamples a distribution. `candela` holds, for each horizontal angle in turn, one intensity per vertical angle.
-/// Angles are in degrees. If a list of angles starts at 0, the distribution is symmetric about 0.
+/// Resamples a distribution of type B at angles of type C. `candela` holds, for each horizontal angle in turn, one
+/// intensity per vertical angle. Angles are in degrees. If `vertical` or `horizontal` starts at 0, the distribution is
+/// symmetric about 0 in this angle.
 ///
 /// # Errors
 /// `Format` if angles do not ascend or are out of range, or if an intensity is negative.
 pub fn to_type_c(vertical: &[f64], horizontal: &[f64], candela: &[f64]) -> Result<TypeC> {
     check(vertical, "vertical", 180.0)?;
     check(horizontal, "horizontal", 90.0)?;
-    // Interpolation would hide a negative intensity beside larger ones.
+    // Check the intensities before the interpolation, which would hide a negative intensity beside larger ones.
     if let Some(negative) = candela.iter().find(|v| **v < 0.0) {
         return Err(Error::format(format!("an intensity is {negative}; it must be at least 0")));
     }
@@ -41,7 +43,7 @@ pub fn to_type_c(vertical: &[f64], horizontal: &[f64], candela: &[f64]) -> Resul
     let is_behind = vertical.iter().any(|v| v.abs() > 90.0);
     let count = quarter as usize * if is_behind { 2 } else { 1 };
 
-    // The angles of the file are among the angles γ, because narrow beams are measured in small steps.
+    // Add the angles of the file to the angles γ, because narrow beams are measured in small steps.
     let end = at(count);
     let own = vertical.iter().chain(horizontal).map(|a| a.abs()).filter(|a| *a < end - MIN_GAP);
     let mut gammas: Vec<f64> = (0..count).map(at).chain(own).collect();
@@ -88,8 +90,8 @@ fn interpolate(vertical: &[f64], horizontal: &[f64], candela: &[f64], [v, h]: [f
     mix(column) * (1.0 - t) + mix(column + 1) * t
 }
 
-/// Returns the index of the interval of a list that holds an angle, and the share of the interval before the angle;
-/// `None` outside the list.
+/// Returns the index of the interval of `list` that contains `angle`, and the position of `angle` in this interval,
+/// from 0 to 1; `None` if `angle` lies outside the list. If the list starts at 0, uses the magnitude of `angle`.
 fn place(list: &[f64], angle: f64) -> Option<(usize, f64)> {
     let (first, last) = (list[0], list[list.len() - 1]);
     let angle = if first == 0.0 { angle.abs() } else { angle };
@@ -133,7 +135,8 @@ mod tests {
     #[test]
     fn powers_of_the_cosine_keep_their_flux_and_shape() {
         for (n, step) in [(1, 5.0f64), (1, 2.5), (8, 2.5), (60, 1.0), (400, 0.5)] {
-            // Linear interpolation of cos^n in steps of h is off by at most n h² / 8; there are three: V, H and γ.
+            // Linear interpolation of cos^n in steps of h is off by at most n h² / 8. There are three interpolations:
+            // in V, in H and in γ.
             let tolerance = 3.0 * f64::from(n) * step.to_radians().powi(2) / 8.0;
             let list = range(-(90.0 / step) as i32, (90.0 / step) as i32, step);
             let found = converted(&list, &list, |[.., z]| z.max(0.0).powi(n));
@@ -147,7 +150,7 @@ mod tests {
         }
     }
 
-    /// A fan beam that is wide and shifted in H, and narrow and shifted in V: up is C = 0, right is C = 270.
+    /// A fan beam: wide and shifted to the right in H, narrow and shifted upwards in V. Up is C = 0, right is C = 270.
     #[test]
     fn beams_point_where_the_file_says() {
         let beam = |[x, y, z]: [f64; 3]| {
@@ -162,13 +165,13 @@ mod tests {
                 assert!((is - exact).abs() < 15.0, "{c} {gamma}: {is} {exact}");
             }
         }
-        // Upwards by 10° is (C, γ) = (0, 10); to the right by 20° is (270, 20).
+        // The direction 10° upwards is (C, γ) = (0, 10); the direction 20° to the right is (270, 20).
         assert!(found.intensity(0.0, 10.0) > 500.0 && found.intensity(180.0, 10.0) < 10.0);
         assert!(found.intensity(270.0, 20.0) > 2.0 * found.intensity(90.0, 20.0));
     }
 
-    /// A file that starts at 0 is the symmetric file of the full range. A file that goes behind the floodlight emits
-    /// there.
+    /// A file whose angles start at 0 gives the same distribution as the symmetric file of the full range. A file with
+    /// vertical angles beyond 90° also emits behind the floodlight.
     #[test]
     fn symmetric_and_backward_files() {
         let even = |[x, y, z]: [f64; 3]| 10.0 + 5.0 * z + x * x + 2.0 * y * y;
@@ -184,7 +187,7 @@ mod tests {
         let part = converted(&range(-8, 8, 2.5), &range(-8, 8, 2.5), |_| 1.0);
         // The range -20° to 20° of both angles covers (2 × 20° in radians) × 2 sin 20° steradians.
         let solid_angle = 40f64.to_radians() * 2.0 * 20f64.to_radians().sin();
-        // The edge of the range is spread over a step of γ and C.
+        // Interpolation spreads the edge of the range over a step of γ and C, so allow 5 %.
         assert!((part.flux() / solid_angle - 1.0).abs() < 0.05, "{} {solid_angle}", part.flux());
         assert_eq!((part.intensity(0.0, 19.0), part.intensity(0.0, 24.0)), (1.0, 0.0));
     }

@@ -1,5 +1,5 @@
-//! Reads and writes the XML of luminaire files. The parser is `roxmltree`; this file bounds its input, so that a
-//! hostile file can demand neither much memory nor much time, and gives errors that name the line.
+//! Reads and writes the XML of luminaire files. The parser is `roxmltree`. This module limits the parser's input, so
+//! that a hostile file can demand neither much memory nor much time, and reports errors with their line.
 //!
 //! Elements are found by their local names: files of different tools declare different namespaces.
 
@@ -8,12 +8,12 @@ use crate::error::{Error, Result};
 use roxmltree::{Document, Node, ParsingOptions};
 use std::fmt::Write;
 
-/// Maximum size of a file in bytes, and maximum number of its nodes: elements, texts and comments. A distribution with
-/// an intensity every half degree takes a third of each. [convention]
+/// Maximum size of a file in bytes (`MAX_BYTES`), and maximum number of its nodes: elements, texts and comments
+/// (`MAX_NODES`). A distribution with an intensity every half degree reaches a third of each limit. [convention]
 pub const MAX_BYTES: usize = 32 << 20;
 const MAX_NODES: u32 = 1 << 21;
-/// Maximum number of attributes of an element, and maximum number of declarations of namespaces in a file.
-/// [convention]
+/// Maximum number of attributes of an element (`MAX_ATTRIBUTES`), and maximum number of namespace declarations in a
+/// file (`MAX_NAMESPACES`). [convention]
 const MAX_ATTRIBUTES: usize = 64;
 const MAX_NAMESPACES: usize = 256;
 
@@ -58,14 +58,16 @@ pub fn parse(text: &str) -> Result<Document<'_>> {
     })
 }
 
-/// Refuses elements with too many attributes: the parser compares each attribute of an element with all others.
+/// Returns an error if an element has too many attributes. The parser compares each attribute of an element with all
+/// others, which would take long.
 fn check_tags(text: &str) -> Result<()> {
     let mut rest = text;
     while let Some(start) = rest.find('<') {
         rest = &rest[start..];
         let comments = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
         if let Some((begin, end)) = comments.iter().find(|(begin, _)| rest.starts_with(begin)) {
-            // The end does not overlap the beginning: `<!-->` is an open comment.
+            // Search for the end only behind the beginning, so that they do not overlap: `<!-->` begins a comment and
+            // does not end it.
             rest = rest[begin.len()..].split_once(end).map_or("", |(_, after)| after);
             continue;
         }
@@ -111,17 +113,18 @@ impl<'a> Element<'a> {
         self.0.children().filter(Node::is_element).map(Self)
     }
 
-    /// The children with a name.
+    /// Iterates over the child elements with the local name `name`.
     pub fn all<'n>(self, name: &'n str) -> impl Iterator<Item = Self> + use<'a, 'n> {
         self.0.children().filter(move |child| child.is_element() && child.tag_name().name() == name).map(Self)
     }
 
-    /// Follows the first children with these names, separated by slashes.
+    /// Returns the element at a path of local names, separated by slashes. Each name stands for the first child of this
+    /// name; `None` if a child is missing.
     pub fn find(self, path: &str) -> Option<Self> {
         path.split('/').try_fold(self, |element, name| element.all(name).next())
     }
 
-    /// The element's first text that is not blank, trimmed; empty if it has none. Comments may stand before it.
+    /// The element's first text that is not blank, trimmed; empty if there is no such text. Comments may precede it.
     pub fn text(self) -> &'a str {
         let texts = self.0.children().filter(Node::is_text).filter_map(|child| child.text());
         texts.map(str::trim).find(|text| !text.is_empty()).unwrap_or("")
@@ -132,7 +135,7 @@ impl<'a> Element<'a> {
         self.text().split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
-    /// The trimmed text of the element at a path; empty if there is none.
+    /// The trimmed text of the element at a path; empty if the element is missing or has no text.
     pub fn text_at(self, path: &str) -> &'a str {
         self.find(path).map_or("", Self::text)
     }
@@ -146,11 +149,11 @@ impl<'a> Element<'a> {
         self.parsed(self.text(), self.name(), low, high)
     }
 
-    /// Parses a word of the element as a number in `[low, high]`; `what` names it in errors.
+    /// Parses `word`, which stands in this element, as a number in `[low, high]`. `what` names the number in errors.
     fn parsed(self, word: &str, what: &str, low: f64, high: f64) -> Result<f64> {
         match word.replace(',', ".").parse() {
             Ok(value) if value >= low && value <= high => Ok(value),
-            // Find the line only for the error's message: that takes a pass over the file.
+            // Find the line only for an error message, because finding it takes a pass over the whole file.
             _ => within(self.line(), word, what, low, high),
         }
     }
@@ -165,7 +168,7 @@ impl<'a> Element<'a> {
         self.attribute(name).map(|word| self.parsed(word, name, low, high)).transpose()
     }
 
-    /// The line on which the element begins. Finding it takes a pass over the file.
+    /// The line on which the element begins, from 1. Finding it takes a pass over the whole file.
     pub fn line(self) -> usize {
         self.0.document().text_pos_at(self.0.range().start).row as usize
     }
@@ -193,7 +196,7 @@ pub fn escape(text: &str) -> String {
     out
 }
 
-/// Writes elements with an indentation of two blanks a level.
+/// Writes XML elements, indented by two blanks per level of nesting.
 pub struct Writer {
     text: String,
     open: Vec<&'static str>,
@@ -248,8 +251,8 @@ mod tests {
     use super::*;
     use std::time::Instant;
 
-    /// Numbers with decimal commas are parsed without a pass over the file for each: 150 000 of them in 2.5 MB would
-    /// take minutes.
+    /// A valid number with a decimal comma is parsed without the search for its line, which takes a pass over the file.
+    /// With that search, the 150 000 numbers of this file of 2.5 MB would take minutes.
     #[test]
     fn numbers_take_no_pass_over_the_file() {
         let text = format!("<a>{}</a>", "<b c='1,5' d='0.25'>\n2,5</b>\n".repeat(75_000));
@@ -279,7 +282,8 @@ mod tests {
         }
     }
 
-    /// `<!-->` begins a comment and does not end it, so the parser reads the element behind it.
+    /// `<!-->` begins a comment and does not end it. The limit on attributes must therefore hold for the element after
+    /// the comment's true end.
     #[test]
     fn comments_hide_no_attributes() {
         let flood: String = (0..1000).map(|i| format!(" a{i}=''")).collect();

@@ -8,10 +8,11 @@ pub(super) struct Curve {
     /// Minimum and maximum time in seconds that the stage can use; 0 < minimum <= maximum.
     pub min_seconds: f64,
     pub max_seconds: f64,
-    /// Ascending times in seconds, each with the squared error after this time. In each of the two intervals the
-    /// squared error is proportional to time^-p. The exponent p follows from the ends of the interval and is clamped to
-    /// [`POWERS`]; a clamped curve passes through the middle point only. The curve continues before the first point,
-    /// and after the last point with p at most [`MAX_EXTRAPOLATED`].
+    /// Ascending times in seconds, each with the squared error after this time. In each of the two intervals between
+    /// the points, the squared error is proportional to time^-p. The exponent p follows from the two ends of the
+    /// interval and is clamped to [`POWERS`]. If p was clamped, the curve in this interval passes through the middle
+    /// point only. The curve continues before the first point, and after the last point with p at most
+    /// [`MAX_EXTRAPOLATED`].
     pub points: [[f64; 2]; 3],
 }
 
@@ -100,7 +101,7 @@ mod tests {
             (curve.squared_error(64.0) - 0.5).abs() < 1e-9
                 && (curve.squared_error(2.0) - 64.0 / 8f64.sqrt()).abs() < 1e-9
         );
-        // Between the points below, the exponent is 2.66. After the last point it is limited to 2.
+        // Between the points, the exponent p is 2.66. After the last point it is limited to 2.
         let steep = Curve { points: [[1.0, 320.0], [4.0, 8.0], [16.0, 0.2]], ..curve };
         assert!((steep.squared_error(1.0) - 320.0).abs() < 1e-9 && (steep.squared_error(16.0) - 0.2).abs() < 1e-9);
         assert!((steep.squared_error(64.0) - 0.2 / 16.0).abs() < 1e-9);

@@ -24,8 +24,7 @@ pub fn stylisation(input: &Input, params: &Params, goal: Goal, clock: Clock, job
     goal.check()?;
     let (ladder, usual) = ladder(params);
     let mut pilot = PilotRuns::new(input, &ladder, usual, clock, job.part(0.0, 0.6))?;
-    // Measure the chosen settings at a higher resolution, and repeat if other settings are then predicted to be
-    // better.
+    // Measure the chosen settings at a higher resolution. Repeat if the prediction then prefers other settings.
     loop {
         let expected = (0..ladder.len()).map(|i| pilot.predict(i));
         let rungs: Vec<_> = expected.map(|t| Expected { seconds: t.seconds, error: t.energy.sqrt() }).collect();
@@ -60,8 +59,8 @@ fn ladder(params: &Params) -> (Vec<Params>, usize) {
     (rungs.iter().map(rung).collect(), 1)
 }
 
-/// Returns the index of the settings with the smallest error within the time, or with the shortest time for the error.
-/// If no settings reach the goal, returns the index of the settings that come nearest to it.
+/// Returns the index of the settings with the smallest error within the goal's time, or with the shortest time within
+/// the goal's error. If no settings reach the goal, returns the index of the settings that come nearest to it.
 fn chosen(rungs: &[Expected], goal: Goal) -> usize {
     let indices = 0..rungs.len();
     let quickest = |a: &usize, b: &usize| rungs[*a].seconds.total_cmp(&rungs[*b].seconds);

@@ -44,7 +44,7 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     let picture = Picture::new(&world, &camera, &transfer.params.render, clock, job.part(0.5, 1.0))?;
 
     // Both stages build the acceleration structure of the scene. For a goal in seconds, subtract twice the time of
-    // building it. Allocate the rest along the error curves of the stages.
+    // building it. Allocate the remaining time to the stages along their error curves.
     let light = match goal {
         Goal::Seconds(budget) => Goal::Seconds((budget - 2.0 * building).max(0.0)),
         Goal::Error(_) => goal,

@@ -13,11 +13,11 @@ use glam::{DMat3, DVec2, DVec3};
 /// Standard deviation, in radians, of an axis that no line determines and only a convention fixes (for instance, that
 /// the camera is upright). [convention]
 pub const FREE_ERROR: f64 = 0.5;
-/// Maximum cosine of the angle between two room axes before they are made orthogonal: 66°. It lies between the 90° of
-/// two axes and the small angle between two estimates of one axis. [convention]
+/// Maximum cosine of the angle between two room axes before they are made orthogonal; it corresponds to an angle of
+/// 66°. This angle lies between the 90° of two axes and the small angle between two estimates of one axis. [convention]
 const MAX_AXIS_COSINE: f64 = 0.4;
-/// Range of the focal length that the directions give, relative to its start value. Outside it, they do not determine
-/// the focal length. [convention: a factor of ten]
+/// Range of the ratio of the estimated focal length to its start value. An estimate outside this range is discarded:
+/// the directions then do not determine the focal length. [convention: a factor of ten]
 const FOCAL_CHANGE: std::ops::Range<f64> = 0.1..10.0;
 
 /// The estimated camera, with the vanishing point of each room axis.

@@ -7,7 +7,8 @@ use crate::job::Job;
 
 /// Hysteresis thresholds of the gradient magnitude, in encoded luma per pixel: every pixel of an edge must reach
 /// `WEAK`, and at least one pixel of each edge must reach `STRONG`. Their ratio is between two and three, as Canny
-/// recommends. The bench prints the accuracy from Hough lines, the only user of these edges. [bench vp]
+/// recommends. Only the Hough transform uses these edges. The bench prints the accuracy of the vanishing points from
+/// Hough lines. [bench vp]
 const WEAK: f32 = 0.015;
 const STRONG: f32 = 0.04;
 

@@ -49,15 +49,16 @@ impl Distortion {
     }
 }
 
-/// `MIN_LENGTH`: minimum length of the segments used. `TRIM`: length left out at each end of a segment, because
-/// corners bend edges there. Both are in pixels. The weight of a segment grows with the fifth power of its length: one
-/// of 30 pixels weighs 1/400 of one of 100 pixels, so shorter ones would cost time and change little. The length left
-/// out is 2.5 standard deviations of the Gaussian plus the one pixel that the Scharr derivative reaches. [convention]
+/// `MIN_LENGTH`: minimum length of the segments used. `TRIM`: length left out at each end of a segment, because corners
+/// bend edges there. Both are in pixels. The weight of a segment grows with the fifth power of its length: a segment of
+/// 30 pixels has 1/400 of the weight of a segment of 100 pixels, so shorter segments would cost time and change little.
+/// `TRIM` is 2.5 standard deviations of the Gaussian plus the one pixel that the Scharr derivative reaches.
+/// [convention]
 const MIN_LENGTH: f64 = 30.0;
 const TRIM: f64 = 4.0;
 /// Number of pixels on each side of a segment within which its edge is searched for.
 const SEARCH_WIDTH: i32 = 4;
-/// A segment is used only if its edge is found along at least this share of its length. The figures of the bench are
+/// A segment is used only if its edge is found along at least this share of its length. The results of the bench are
 /// equal for all values between 0.35 and 0.98. [bench constants:lens]
 const MIN_COVERAGE: f64 = 0.7;
 /// Minimum number of traced segments; with fewer segments there is no estimate.
@@ -157,8 +158,8 @@ fn trace(gradients: &Gradients, segment: &Segment) -> Option<Edge> {
     for t in (0..steps).map(|i| TRIM + i as f64) {
         let slopes: Vec<f64> = profile(t).map(|at| slope(gradients, at, across)).collect();
         let Some(best) = (0..slopes.len()).max_by(|&i, &k| slopes[i].total_cmp(&slopes[k])) else { continue };
-        // Skip positions where the edge leaves the strip or has the wrong polarity; refine to sub-pixel precision by a
-        // parabola.
+        // Skip the position if the maximum lies at an end of the profile, or if the gradient has the wrong polarity.
+        // Refine other maxima to sub-pixel precision by a parabola.
         let inside = best > 0 && best + 1 < slopes.len() && slopes[best] > 0.0;
         if inside
             && let [before, peak, after] = slopes[best - 1..=best + 1]

@@ -76,7 +76,7 @@ pub fn locate(map: &Map, row: usize, first: usize, to: &mut Footprints) {
     }
 }
 
-/// Computes the footprints as [`locate`] does. `shown` maps the pixels of an ideal lens to those of the source.
+/// Computes the footprints for [`locate`]. `shown` maps the pixels of an ideal lens to the pixels of the source.
 #[inline(always)]
 fn locate_through(
     Map { to_source: map, front, lens, size }: &Map,
@@ -136,8 +136,9 @@ fn locate_through(
     }
 }
 
-/// Returns the rows of the Jacobian after the lens: `[a, b, c, d]` are those of the map to the pixels of an ideal lens,
-/// and `at` is the pixel of the source.
+/// Returns the two rows of the Jacobian of the map from output pixels to source pixels, with the distortion of the
+/// lens. `[a, b, c, d]` holds the two rows of the Jacobian of the map to the pixels of an ideal lens. `at` is the
+/// source pixel at which the lens is differentiated.
 #[inline(always)]
 fn through_lens(lens: &Radial, at: (f64, f64), [a, b, c, d]: [f32; 4]) -> ((f32, f32), (f32, f32)) {
     let inverse = lens.derivative(DVec2::new(at.0, at.1)).inverse().as_mat2();

@@ -10,8 +10,8 @@ use crate::job::Job;
 /// to keep thin lines. [bench lines]
 pub const SIGMA: f32 = 1.2;
 
-/// Offset inside the square root that encodes luma. It limits the slope of the encoding near black, as the linear toe
-/// of sRGB does, which ends at 0.0031. [convention: sRGB]
+/// Offset inside the square root that encodes luma. It limits the slope of the encoding near black. The linear part of
+/// the sRGB curve, below 0.0031, has the same purpose. [convention: sRGB]
 const TOE: f32 = 0.003;
 
 /// Upper bound of the luminance relative to white, applied before the encoding. Brighter pixels are lamps, of which

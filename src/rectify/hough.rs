@@ -14,8 +14,8 @@ use std::f64::consts::PI;
 const ANGLES: usize = 360;
 
 /// `MIN_VOTES`: minimum votes of an accumulator maximum, as a share of the image's shorter side in pixels, but never
-/// less than 8 votes. `MAX_LINES`: maximum number of lines returned. The bench prints the accuracy from Hough lines.
-/// [bench vp]
+/// less than 8 votes. `MAX_LINES`: maximum number of lines returned. The bench prints the accuracy of the vanishing
+/// points from Hough lines. [bench vp]
 const MIN_VOTES: f64 = 0.06;
 const MAX_LINES: usize = 600;
 
@@ -23,7 +23,7 @@ const MAX_LINES: usize = 600;
 const SUPPRESSED: (usize, usize) = (4, 4);
 
 /// `MAX_DISTANCE`: maximum distance of an edge pixel from its line. `MAX_GAP`: maximum gap that a piece of a line
-/// bridges. Both are in pixels. The bench prints the accuracy from Hough lines. [bench vp]
+/// bridges. Both are in pixels. The bench prints the accuracy of the vanishing points from Hough lines. [bench vp]
 const MAX_DISTANCE: f64 = 1.5;
 const MAX_GAP: f64 = 6.0;
 /// Minimum length of a piece of a line, as a share of half the image's diagonal and in pixels. Shorter pieces have no
@@ -142,7 +142,7 @@ pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, j
     Ok(segments)
 }
 
-/// Returns the whole visible part of each line, as the paper uses it.
+/// Returns the whole visible part of each line; the paper uses these lines, not their pieces.
 pub fn whole_lines(gradients: &Gradients, peaks: &[Peak]) -> Vec<Segment> {
     let size = DVec2::new(gradients.width as f64, gradients.height as f64);
     let line = |peak: &Peak| {

@@ -30,8 +30,8 @@ pub trait PixelLanes: Copy {
     fn add(self, other: Self) -> Self;
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
-    /// Returns the sum of the four pixels for each channel. The lanes beyond the channels are undefined, also in the
-    /// results of the next two functions.
+    /// Returns the sum of the four pixels for each channel. The lanes beyond the channels are undefined, here and in
+    /// the results of `min_over_pixels` and `max_over_pixels`.
     fn sum(self) -> Vec4;
     fn min_over_pixels(self) -> Vec4;
     fn max_over_pixels(self) -> Vec4;

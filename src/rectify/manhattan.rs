@@ -12,12 +12,12 @@ use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
 /// Focal lengths tried in addition to the focal lengths that pairs of candidates imply, in units of half the longer
-/// image side: angles of view from 20 to 110 degrees. The bench prints the accuracy for an unknown and for a known
-/// focal length; the difference is the loss by the search for the focal length. [bench vp]
+/// image side: angles of view from 20 to 110 degrees. The bench prints the accuracy of the vanishing points for an
+/// unknown and for a known focal length; the difference is the loss by the search for the focal length. [bench vp]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
-/// Range of focal lengths in the refinement: angles of view from 9.5 to 136 degrees, more than the angles of [`FOCALS`]
-/// at both ends. It keeps steps from a bad start from running off to a degenerate focal length. [convention]
+/// Range of focal lengths in the refinement: angles of view from 9.5 to 136 degrees, a wider range than that of
+/// [`FOCALS`]. It prevents steps from a bad start from leading to a degenerate focal length. [convention]
 const FOCAL_RANGE: [f64; 2] = [0.4, 12.0];
 /// Weight that fixes a given focal length in the refinement, relative to the weight of the lines. [rounding]
 const FIXED_WEIGHT: f64 = 1e12;
@@ -30,18 +30,20 @@ const SEARCH_SPREAD: f64 = 0.4;
 
 /// Penalty of a triplet whose focal length deviates from the prior by one standard deviation, as a share of the total
 /// weight of the lines: the triplet must explain this much more weight than a triplet at the median focal length. The
-/// bench prints the accuracy for an unknown focal length, in which this penalty matters. [bench vp]
+/// bench prints the accuracy of the vanishing points for an unknown focal length, for which this penalty matters.
+/// [bench vp]
 const FOCAL_COST: f64 = 0.004;
 
 /// Share of a line's weight that the search for further candidates ignores if a candidate explains the line completely.
 /// [bench vp:panoramas]
 const EXPLAINED_SHARE: f32 = 0.9;
 
-/// Two candidates are paired at a focal length, the given one or one of [`FOCALS`], if the magnitude of the cosine of
-/// the angle between their directions is below this: within 9 degrees of a right angle. If the true focal length
-/// lies half a step, a factor of √1.36, beside a listed one, the cosine of a right angle is at most
-/// (1.36 - 1) / (1.36 + 1) = 0.15; the steps of [`FOCALS`] up to 2.2 are factors of 1.29 to 1.37. A smaller limit would
-/// miss pairs between two listed focal lengths, a larger one would take many pairs for both. [convention]
+/// Two candidates are paired at a focal length if the magnitude of the cosine of the angle between their directions is
+/// below this: within 9 degrees of a right angle. The focal length is the given one or one of [`FOCALS`], whose steps
+/// up to 2.2 are factors of 1.29 to 1.37. Suppose that the directions are at a right angle at the true focal length,
+/// and that this focal length lies half a step, a factor of √1.36, from a listed one. At the listed focal length, the
+/// cosine is then at most (1.36 - 1) / (1.36 + 1) = 0.15. A smaller limit would miss pairs whose true focal length lies
+/// between two listed ones; a larger limit would accept many pairs at both of these. [convention]
 const MAX_COSINE: f64 = 0.15;
 
 /// Two triplets are similar if each axis of one is within 1.8 degrees (`MIN_AXIS_COSINE`) of an axis of the other, and

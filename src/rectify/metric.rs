@@ -1,5 +1,5 @@
 //! Distances between a vanishing point and a line (§5.2). The points are homogeneous, so all distances are exact for
-//! points at infinity. The paper's distance (Eq. 2) may be infinite there; the others are finite.
+//! points at infinity. For such points, the paper's distance (Eq. 2) may be infinite; the other distances are finite.
 
 use crate::geometry::Segment;
 use glam::{DVec2, DVec3};

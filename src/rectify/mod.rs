@@ -168,7 +168,7 @@ fn straightened(
     }
 }
 
-/// Returns the lens with the given distortion; one without distortion if none is given.
+/// Returns the lens with the distortion given in `params`; a lens without distortion if `params` gives none.
 fn given_lens([width, height]: [usize; 2], params: &Params) -> Result<Radial> {
     let size = DVec2::new(width as f64, height as f64);
     params
@@ -222,8 +222,8 @@ fn detect_lines(photo: &Image, centre: DVec2, params: &Params, job: Job) -> Resu
     Ok(Lines { segments, distortion })
 }
 
-/// Finds the vanishing points and the camera from segments that the caller detected, as [`find_view`] does from a
-/// photo. The `distortion` of the result is `None`; only a distortion given in `params` is undone.
+/// Like [`find_view`], but finds the vanishing points and the camera from segments that the caller has detected. The
+/// `distortion` of the result is `None`; only a distortion given in `params` is undone.
 pub fn view_from_segments(
     segments: &[Segment],
     width: usize,

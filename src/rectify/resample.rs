@@ -34,7 +34,7 @@ pub fn warp(source: &Image, to_source: &Homography, width: usize, height: usize,
 }
 
 /// Returns the photo that an ideal lens would have taken, with the same size and principal point. Pixels that the photo
-/// does not show are 0. The same photo, to the bit, if the lens has no distortion.
+/// does not show are 0. If the lens has no distortion, the result is an exact copy of the photo.
 pub fn undistort(photo: &Image, lens: &Radial, job: Job) -> Result<Image> {
     if lens.is_none() {
         return photo.try_clone();
@@ -43,7 +43,7 @@ pub fn undistort(photo: &Image, lens: &Radial, job: Job) -> Result<Image> {
     warp_photo(photo, &map, photo.width, photo.height, job)
 }
 
-/// Resamples a photo, as [`warp`] does, through a homography and the distortion of the lens at once.
+/// Like [`warp`], but resamples a photo through a homography and the distortion of its lens in one step.
 pub fn warp_photo(source: &Image, to_source: &PhotoMap, width: usize, height: usize, job: Job) -> Result<Image> {
     let PhotoMap { homography, lens } = to_source;
     if !homography.0.is_finite() {

@@ -50,8 +50,8 @@ impl Pair {
 /// Returns for each axis how far the angle between the two other axes deviates from a right angle; `None` if one of
 /// the two is unknown. Each direction must point the same way as its axis.
 ///
-/// `focal` is the focal length in pixels with which the directions were estimated. Unless the user gave it, each angle
-/// is evaluated at the focal length expected from the other angles and the prior.
+/// `focal` is the focal length in pixels with which the directions were estimated; `is_given` tells whether the user
+/// gave it. If not, each angle is evaluated at the focal length that the other angles and the prior `expected` imply.
 pub fn measure(
     directions: &[Option<Refined>; 3],
     focal: f64,

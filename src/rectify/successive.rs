@@ -21,11 +21,12 @@ const MAX_VISIBLE_LINE_DISTANCE: f64 = 8.0;
 const LONGER_SIDE: f64 = 640.0;
 
 /// Pattern search for a vanishing point. `FIRST_STEP`: the first step of alpha, as a share of 1 - alpha. `TURN`: the
-/// change of theta, in radians, for a step of 1. The choice is free, because the step is halved wherever no neighbour
-/// is better. [convention]
+/// change of theta, in radians, for a step of 1. Both values may be chosen freely, because the search halves its step
+/// whenever no neighbouring point is better. [convention]
 const FIRST_STEP: f64 = 0.2;
 const TURN: f64 = 0.3;
-/// Step at which the search ends, and least value of 1 - alpha in a step. [rounding]
+/// The search ends when its step is at most this. This is also the minimum of the factor 1 - alpha in a step of alpha.
+/// [rounding]
 const LAST_STEP: f64 = 1e-9;
 
 /// Finds at most `count` vanishing points, in homogeneous pixels and in the order of detection.

@@ -18,8 +18,9 @@ const MAX_LINES: usize = 2500;
 /// Maximum standard deviation of a direction in radians; directions with a larger one are rejected.
 /// [bench vp:panoramas]
 const MAX_ERROR: f64 = 0.2;
-/// Two estimates are of one direction if the cosine of the angle between them is at least this: 26°. It lies between the
-/// 90° of two axes and the errors of a direction, of which [`MAX_ERROR`] is the largest. [convention]
+/// Two estimates are of one direction if the cosine of the angle between them is at least this; it corresponds to an
+/// angle of 26°. This angle lies between the 90° of two axes and the errors of a direction, of which [`MAX_ERROR`] is
+/// the largest. [convention]
 const MAX_EQUAL_COSINE: f64 = 0.9;
 
 /// Standard deviations of the priors with which directions are refined. `SQUARENESS`: deviation from a right angle of

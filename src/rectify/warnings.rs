@@ -7,9 +7,9 @@ use crate::warning::{Code, Warning, percent};
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Limit of the warning about an assumed focal length, as a relative standard deviation of the focal length. The
-/// standard deviation has this value if the lines and the prior are equally precise. If the lines are less precise than
-/// the prior, the standard deviation is larger. [convention]
+/// Limit, stated in the warning about an assumed focal length, of the relative standard deviation of the focal length.
+/// A focal length is assumed if the lines are no more precise than the prior. Its standard deviation is then at least
+/// this value, and equal to it if the lines and the prior are equally precise. [convention]
 const MAX_FOCAL_SPREAD: f64 = USUAL_SPREAD * FRAC_1_SQRT_2;
 /// A room axis whose standard deviation is above this, in radians, raises a warning. [judged on 38 photos]
 pub const MAX_DIRECTION_ERROR: f64 = 0.035;

@@ -28,7 +28,7 @@ pub(super) struct TextureSample {
 }
 
 impl Pyramid {
-    /// Builds all levels down to a single texel. Negative values are clamped to 0.
+    /// Builds the pyramid: levels from the full resolution down to a single texel. Negative values are clamped to 0.
     pub fn new(image: &Image, job: Job) -> Result<Self> {
         let mut image = image.to_rgb()?;
         image.data.iter_mut().for_each(|v| *v = v.max(0.0));

@@ -31,8 +31,8 @@ const MAX_STEPS: usize = 200;
 /// A gradient counts as zero if its relative norm is at most this. The norm is relative to the largest entry of the
 /// right-hand side, or to the norm of the first gradient if that is larger. [rounding]
 const CONVERGED: f64 = 1e-12;
-/// After the last step, a gradient of this relative norm is accepted, since an unknown at its bound may keep changing
-/// state. [rounding]
+/// After `MAX_STEPS` steps, a gradient of this relative norm is still accepted, because rounding may change the state
+/// of an unknown at its bound in every step. [rounding]
 const CONVERGED_AT_BOUND: f64 = 1e-8;
 
 /// The state of an unknown.
@@ -69,7 +69,7 @@ impl BoundedLeastSquares<'_> {
             }
             gradient = self.gradient(lambda, &z);
         }
-        // Accept a small gradient: an unknown at its bound may change state by rounding.
+        // Accept a small gradient: rounding may change the state of an unknown at its bound in every step.
         if norm(&gradient) <= CONVERGED_AT_BOUND * scale {
             return Ok(self.clipped(&z));
         }

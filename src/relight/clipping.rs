@@ -5,9 +5,9 @@
 //!
 //! 1. For each pair of channels, fit a line to the pixels in which both channels are unclipped.
 //! 2. In the other pixels, predict a clipped channel from an unclipped one with this line.
-//! 3. Limit the prediction, because it is an extrapolation. It is at least the clipped value. It exceeds this value
-//!    only up to `r x`, where `x` is the value of the unclipped channel. `r` is the mean of the clipped channel divided
-//!    by the mean of the unclipped channel, both over the pixels of step 1.
+//! 3. Limit the prediction, because it is an extrapolation. It is at least the clipped value. If it exceeds the clipped
+//!    value, it is at most `r x`, where `x` is the value of the unclipped channel, and `r` is the mean of the clipped
+//!    channel divided by the mean of the unclipped channel, both over the pixels of step 1.
 //!
 //! If all channels of a pixel are clipped, the pixel keeps its values, which are lower bounds.
 

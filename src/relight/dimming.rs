@@ -31,8 +31,8 @@ struct DimmingState {
 }
 
 impl Terms<'_> {
-    /// Rounds the powers `x` to `levels` (ascending, not empty). Each group gets a level that is at most its bound in
-    /// `upper`, or the lowest level if all levels are above the bound.
+    /// Rounds the powers `x` to `levels` (ascending, not empty). The level of a group is at most the group's bound in
+    /// `upper`; if all levels are above the bound, the group gets the lowest level.
     pub fn round(&self, x: &[f64], levels: &[f64], upper: &[f64]) -> Vec<f64> {
         let max_level: Vec<usize> = upper.iter().map(|u| levels.partition_point(|l| l <= u).max(1) - 1).collect();
         let nearest = |j: usize| {

@@ -191,8 +191,8 @@ impl EmissionLamps {
         self.chained(|i| self.centres[i][axis.min(2)], |a, b| b - a > tolerance)
     }
 
-    /// Sorts the lamps by `number` and groups them. A new group begins where `leaps` is true for the numbers of two
-    /// successive lamps.
+    /// Sorts the lamps by the value of `number` and groups them. A new group begins between two successive lamps if
+    /// `leaps` returns true for their values.
     fn chained(&self, number: impl Fn(usize) -> f32, leaps: impl Fn(f32, f32) -> bool) -> (Vec<u32>, usize) {
         let mut order: Vec<usize> = (0..self.count).collect();
         order.sort_by(|&a, &b| number(a).total_cmp(&number(b)).then(a.cmp(&b)));

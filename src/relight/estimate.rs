@@ -18,7 +18,8 @@ pub(super) fn standard_error(values: &[f64; BATCHES]) -> f64 {
     (values.iter().map(|v| (v - centre) * (v - centre)).sum::<f64>() / (n - 1.0) / n).sqrt()
 }
 
-/// Returns the mean over all batches except one; `part` is the value of that batch.
+/// Returns the mean over all batches except one. `mean` is the mean over all batches; `part` is the value of the batch
+/// to leave out.
 pub(super) fn without(mean: f64, part: f64) -> f64 {
     let n = BATCHES as f64;
     (n * mean - part) / (n - 1.0)

@@ -261,7 +261,7 @@ impl System<'_> {
 
     /// Returns the means over all batches but one.
     fn means_without(&self, all: &MeanResponses, batch: usize) -> MeanResponses {
-        // Clamp to 0, because rounding may make the remainder negative.
+        // Clamp the mean without the batch to 0, because rounding may make it negative.
         let rest = |mean: &DVec3, part: DVec3| {
             let n = BATCHES as f64;
             ((*mean * n - part) / (n - 1.0)).max(DVec3::ZERO)
@@ -304,7 +304,8 @@ impl System<'_> {
         }
     }
 
-    /// Calls `solve` once for all channels together, or once for each channel, and collects the powers.
+    /// Calls `solve` once for all channels together, or once for each channel, as `params.colour` says. Collects the
+    /// powers.
     fn by_channels(&self, solve: impl Fn(&[usize]) -> Result<Vec<f64>>) -> Result<Powers> {
         let channels: &[&[usize]] = match self.params.colour {
             Colour::Common => &[&[0, 1, 2]],
@@ -365,7 +366,7 @@ impl System<'_> {
         Ok(Outcome { achieved: all.mean, half_width: all.half_width(), status })
     }
 
-    /// Explains why goals of positive weight are missed; `None` if these are met.
+    /// Explains why goals of positive weight are missed; `None` if all goals of positive weight are met.
     fn explain(&self, outcomes: &[Outcome], scale: &[DVec3]) -> Option<String> {
         let missed: Vec<usize> = (0..outcomes.len())
             .filter(|&g| self.goals[g].weight > 0.0 && outcomes[g].status.iter().any(|r| *r != TargetStatus::Met))

@@ -32,7 +32,8 @@ pub struct ImportanceParams {
     /// Number of cells along u and v, each in `[1, 512]`.
     pub width: usize,
     pub height: usize,
-    /// Stopping conditions. The target error applies to the response to uniform emission. `quantity` is ignored.
+    /// Stopping conditions of the tracing. The target error applies to the target's response to uniform emission.
+    /// `quantity` is ignored.
     pub tracing: Params,
 }
 

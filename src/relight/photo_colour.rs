@@ -1,8 +1,8 @@
 //! Computes the target colour of the surface from the photo.
 //!
-//! A clipped channel of a pixel is known only to be at least white. Often its value follows from the unclipped
-//! channels ([`clipping`]); otherwise it counts as white. If a channel is unknown in most pixels, its target is a
-//! lower bound instead of an exact value.
+//! A clipped channel of a pixel is known only to be at least white. Often its true value follows from the unclipped
+//! channels of the pixel ([`clipping`]); otherwise the channel counts as white. If a channel is unknown in most pixels,
+//! its target is a lower bound instead of an exact value.
 
 use super::clipping;
 use super::sided::Constraint;

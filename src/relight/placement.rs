@@ -9,8 +9,9 @@
 //! 2. Descend from the best of them (projected BFGS: Nocedal and Wright 2006, chapters 6 and 16.7).
 //! 3. Compare the results at full resolution ([`Importance::respond`]).
 //!
-//! The noise of the map favours some placements. The estimated light of the best placement is therefore slightly too
-//! close to the aim (too bright for [`Aim::Brightest`]), by a small part of its confidence interval.
+//! The noise of the map favours some placements. The search therefore overestimates slightly how close the light of its
+//! best placement comes to the aim (for [`Aim::Brightest`], how bright the light is), by a small part of the light's
+//! confidence interval.
 
 use super::band::Pyramid;
 use super::descent::{self, Bounds};

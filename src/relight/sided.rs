@@ -28,7 +28,8 @@ pub enum Constraint {
 }
 
 impl Constraint {
-    /// Returns the residual of a value that exceeds the target by `over`; 0 if a limit is satisfied.
+    /// Returns the residual of a value that exceeds its target by `over`. If the target is a limit and the value
+    /// satisfies it, the residual is 0.
     pub(super) fn miss(self, over: f64) -> f64 {
         match self {
             Self::Exactly => over,
@@ -54,7 +55,8 @@ pub(super) struct OneSidedLeastSquares<'a> {
 
 /// Maximum number of Newton steps; a few suffice. [convention]
 const MAX_STEPS: usize = 200;
-/// A term keeps its state (active or not) if its value equals its limit up to this relative difference. [rounding]
+/// If the value of a term equals its limit up to this relative difference, the term keeps its state: active or not.
+/// [rounding]
 const ROUNDING: f64 = 1e-12;
 
 impl OneSidedLeastSquares<'_> {
@@ -210,8 +212,8 @@ mod tests {
         near(solve(&[0.0], &[1.0], &[AtLeast], &[0.7]), &[0.7]);
     }
 
-    /// The third unknown jumps from its upper bound to 0 in one step; the method must not stop there, as the function
-    /// still decreases.
+    /// The third unknown jumps from its upper bound to 0 in one step. The function still decreases after this step, so
+    /// the method must not stop there.
     #[test]
     fn a_jump_from_bound_to_bound_does_not_end_the_search() {
         let (a, b) = ([0.64, 0.44, 0.37], [0.06, 0.92, 0.2]);

@@ -50,8 +50,8 @@ pub(super) fn run(measured: &BatchMeasurements, target: DVec3, constraint: [Cons
     if status.iter().all(|&r| r != TargetStatus::Met) {
         return Err(Error::new(ErrorKind::Unreachable, explain(status)));
     }
-    // Give channels without response the mean scale of the channels that met their target, so that they are neither
-    // black nor extrapolated.
+    // A channel without response gets the mean scale of the channels that met their target, so that it is neither black
+    // nor extrapolated.
     let met: Vec<f64> = answers.iter().filter(|a| a.status == TargetStatus::Met).map(|a| a.scale).collect();
     let neutral = met.iter().sum::<f64>() / met.len() as f64;
     let scale = answers.each_ref().map(|a| if a.status == TargetStatus::Dark { neutral } else { a.scale });
@@ -121,8 +121,8 @@ impl Channel {
     fn solve(&self, target: f64) -> Answer {
         let response = mean(&self.response);
         let noise = standard_error(&self.response);
-        // `scale` divides by the mean of `own`. The jackknife leaves out one batch at a time, so at least two batches
-        // need a positive value of `own`; otherwise the divisor could become 0.
+        // `scale` divides by the mean of `own` over the batches. The jackknife leaves out one batch at a time. At least
+        // two batches must therefore have a positive value of `own`; otherwise a divisor could become 0.
         let paired = self.squares.is_none_or(|[own, _]| own.iter().filter(|square| **square > 0.0).count() > 1);
         if response.is_nan() || response <= 3.0 * noise || !paired {
             return Answer { scale: 0.0, half_width: 0.0, status: TargetStatus::Dark, deviations: [0.0; BATCHES] };

@@ -48,7 +48,7 @@ impl Target {
 }
 
 impl<'a> Sampler<'a> {
-    /// `scene` provides the reflectance of the target and the lamps to exclude.
+    /// Creates the sampler of a target. `scene` provides the reflectance of the target, and the lamps to exclude.
     pub fn new(scene: &'a Scene, geometry: TargetGeometry<'a>, quantity: Quantity) -> Result<Self> {
         match geometry {
             TargetGeometry::Surface(triangles) => Surface::new(scene, triangles, quantity).map(Self::Surface),

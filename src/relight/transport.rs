@@ -14,8 +14,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// Number of paths per batch in the first round. Rounds follow until a stopping condition holds, so their sizes only
-/// determine how many paths are traced beyond the necessary number. \[convention\]
+/// Number of paths per batch in the first round. Rounds follow until a stopping condition holds. The sizes of the
+/// rounds only determine how many more paths are traced than necessary. \[convention\]
 pub const FIRST_ROUND: u32 = 64;
 /// Smallest and largest growth factor of the number of paths in later rounds. Like `FIRST_ROUND`, they change only the
 /// number of rounds and the overshoot. [convention]

@@ -25,7 +25,7 @@ pub enum Aov {
     Normal,
     /// Unit geometric normal of the triangle, facing the viewer; 0 for the background.
     GeometricNormal,
-    /// Reflectance plus transmittance at normal incidence.
+    /// Reflectance plus transmittance at normal incidence, limited to 1 per channel; 0 for the background.
     Albedo,
     /// Index of the mesh plus 1; 0 for the background. The luminous faces of light number `i` have the value
     /// `m + i + 1` if the scene has `m` meshes.
@@ -53,8 +53,8 @@ impl Aov {
         Self::Luminance,
     ];
 
-    /// Returns the name of the attribute's layer in image files: the name in Blender or Nuke, if they have this
-    /// attribute.
+    /// Returns the name of the attribute's layer in image files. If Blender or Nuke has a name for the attribute, the
+    /// layer has the same name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "Depth",
@@ -152,8 +152,8 @@ pub struct SurfaceSums {
 }
 
 impl SurfaceSums {
-    /// Adds a primary hit. `depth` is its distance from the camera along the camera's forward direction, in metres;
-    /// `seen.distance` is that along the ray.
+    /// Adds a primary hit. `depth` is the distance from the camera to the hit along the camera's forward direction, in
+    /// metres; `seen.distance` is the distance along the ray.
     pub fn add(&mut self, world: &World, seen: &PrimaryHit, depth: f32) {
         let material = world.mesh(seen.mesh).material;
         self.hits += 1;
@@ -167,8 +167,8 @@ impl SurfaceSums {
         self.material.cast(material as u32 + 1);
     }
 
-    /// Adds a surface attribute of these samples to the f32 totals that the film keeps for the pixel. Votes for an
-    /// index are merged instead.
+    /// Adds the sum of a surface attribute over the recorded hits to the f32 totals that the film keeps for the pixel.
+    /// For an index, merges the recorded votes with the votes in the totals instead.
     pub fn add_to_totals(&self, aov: Aov, totals: &mut [f32]) {
         match aov {
             Aov::Object => self.object.join(totals),
@@ -177,9 +177,9 @@ impl SurfaceSums {
         }
     }
 
-    /// Adds these sums to the f64 sums that a render in parts keeps for the pixel. Call it after each path: the votes
-    /// for an index are then counted exactly, as long as the pixel shows at most `ballot::CANDIDATES` different
-    /// indices.
+    /// Adds the sum of a surface attribute over the recorded hits to the f64 sums that a render in parts keeps for the
+    /// pixel. Call this function after each path: the votes for an index are then counted exactly, as long as the pixel
+    /// shows at most `ballot::CANDIDATES` different indices.
     pub fn add_to(&self, aov: Aov, sums: &mut [f64]) {
         match aov {
             Aov::Object => ballot::cast(sums, self.object.candidate.into(), self.object.lead.into()),

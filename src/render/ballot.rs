@@ -5,9 +5,9 @@
 //! merging. If it shows more, votes for rare candidates cancel votes for the others, but an index with a majority
 //! still wins.
 
-/// Largest number of different object or material indices (the candidates) whose votes one ballot can hold. An index
-/// with more than one vote in `CANDIDATES` + 1 is kept for certain, so any value ≥ 1 keeps an index with a majority.
-/// [convention]
+/// Largest number of different object or material indices (the candidates) whose votes one ballot can hold. A ballot
+/// certainly keeps an index that gets more than 1 / (`CANDIDATES` + 1) of all votes. Any value ≥ 1 therefore keeps an
+/// index with a majority. [convention]
 const CANDIDATES: usize = 4;
 /// Length of a ballot in f64 values: for each slot a candidate and its number of votes. A slot with 0 votes is empty.
 pub const NUMBERS: usize = 2 * CANDIDATES;
@@ -36,8 +36,8 @@ pub fn join(ballot: &mut [f64], other: &[f64]) {
     slots.iter().filter(|s| s[1] > 0.0).for_each(|s| cast(ballot, s[0], s[1]));
 }
 
-/// Returns the candidate with the most votes, and its number of votes; zeros for an empty ballot. Ties go
-/// to the smallest index.
+/// Returns the candidate with the most votes, and its number of votes; two zeros for an empty ballot. Among candidates
+/// with equal numbers of votes, the smallest index wins.
 pub fn winner(ballot: &[f64]) -> [f64; 2] {
     let (slots, _) = ballot.as_chunks::<2>();
     let better = |a: [f64; 2], b: [f64; 2]| if (b[1], -b[0]) > (a[1], -a[0]) { b } else { a };

@@ -3,8 +3,8 @@
 //!
 //! The importance is the intensity of the cluster, times an upper bound of the cosine at the emitters, times an upper
 //! bound of the cosine at the receiver, divided by the squared distance (Conty Estevez and Kulla 2018, "Importance
-//! sampling of many lights with adaptive tree splitting", section 4). It is never 0 if light of the cluster can reach
-//! the receiver.
+//! sampling of many lights with adaptive tree splitting", section 4). The importance is never 0 if light of the cluster
+//! can reach the receiver.
 
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
@@ -38,8 +38,8 @@ pub struct Bounds {
     pub intensity: f32,
 }
 
-/// Cone angle of a light that may have its full intensity in all directions: 180° + 90°, because the intensity is full
-/// up to the cone angle minus 90°. [convention]
+/// Cone angle of a light that may have its full intensity in all directions. The intensity is full up to the cone angle
+/// minus 90°, so this cone angle is 180° + 90°. [convention]
 const FULL_SPHERE: f32 = PI + FRAC_PI_2;
 
 /// Angle in radians by which cones are widened, so that rounding does not put light outside them. [rounding]
@@ -136,8 +136,9 @@ pub struct BoundsLanes {
     /// to the receiver. The bound is computed from the larger of c and `back_sign` × c, which is |c| for two-sided
     /// lights.
     back_sign: Lanes,
-    /// Sine and cosine of `cone_angle` - 90° (`cone_rotation`), and the smallest cosine to the axis at which the bound
-    /// is the full intensity (`full_cosine`; 2 if there is none).
+    /// `cone_rotation` holds the sine and the cosine of `cone_angle` - 90°. `full_cosine` is the smallest cosine of the
+    /// angle to the axis at which the bound is the full intensity; it is 2, which no cosine reaches, for cone angles
+    /// below 90°.
     cone_rotation: [Lanes; 2],
     full_cosine: Lanes,
     intensity: Lanes,
@@ -190,8 +191,8 @@ impl BoundsLanes {
         lanes
     }
 
-    /// Returns the importance of each cluster for a receiver. The squared distance counts as at least `nearest`, which
-    /// must be positive.
+    /// Returns the importance of each cluster for a receiver. A squared distance below `nearest` (in m²) counts as
+    /// `nearest`, which must be positive.
     pub fn importance(&self, receiver: &Receiver, nearest: f32) -> Lanes {
         let (p, n, m) = (receiver.position, receiver.normal, receiver.normal.abs());
         // Evaluate all lanes without branches, so that the compiler vectorises the loop.
@@ -203,8 +204,9 @@ impl BoundsLanes {
             // Bound the cosine at the emitters. A surface emits up to 90° from its normal, so the normals of a cluster
             // of surfaces lie within α = `cone_angle` - 90° of the axis. θ is the angle between the axis and the
             // direction from the centre of the box to the receiver. If θ ≤ α, a normal may point at the receiver, and
-            // the bound is 1. Otherwise, the bound is cos(θ - α). An allowance for the extent of the box is added to
-            // it. Point lights have no normal; their bound is the same by the definition of `cone_angle`.
+            // the bound is 1. Otherwise, the bound is cos(θ - α). Then add the allowance for the extent of the box to
+            // the bound. Point lights have no normal; their `cone_angle` is defined such that the same formula bounds
+            // their intensity.
             let cosine = -(self.axis[0][i] * d[0] + self.axis[1][i] * d[1] + self.axis[2][i] * d[2]) * inverse;
             let cosine = larger(cosine, cosine * self.back_sign[i]);
             let sine = larger(1.0 - cosine * cosine, 0.0).sqrt();

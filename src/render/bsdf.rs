@@ -345,7 +345,7 @@ impl<'a> SpecularLayers<'a> {
 /// The directional albedo of a rough dielectric top layer, looked up in the albedo table.
 struct TopAlbedo<'a> {
     row: ggx::AlbedoRow<'a>,
-    /// Factors by which the two values of a table entry, scale and bias, are multiplied: `dielectric_f0` and `f90`.
+    /// Factors for the two values of a table entry: `dielectric_f0` for the scale, `f90` for the bias.
     weights: Vec2,
 }
 

@@ -50,7 +50,7 @@ impl Distribution {
     /// Never returns an entry of zero weight; at least one weight must be positive.
     pub fn sample(&self, u: f64) -> (usize, f64) {
         let target = u * self.total();
-        // Search between two consecutive guide entries, and one entry beyond on each side because of rounding.
+        // Search from one value of `guide` to the next one. Because of rounding, include one more entry on each side.
         let k = ((u * self.guide.len() as f64) as usize).min(self.guide.len() - 1);
         let low = (self.guide[k] as usize).saturating_sub(1);
         let high =

@@ -32,8 +32,8 @@ pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
 /// the point and c that of the scene, in metres. Without the limit, in a scene as large as a country, the offset would
 /// move the point through a wall. [convention]
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
-/// The region where most triangles of a scene lie counts as far from the origin if the largest coordinate of its median
-/// exceeds `FAR` times half the region's extent. [convention]
+/// The region where most triangles of a scene lie counts as far from the origin if the largest coordinate of their
+/// median position exceeds `FAR` times half the region's extent. [convention]
 const FAR: f64 = 32.0;
 /// The region where most triangles of a scene lie is found from a sample of the triangles. The sample has
 /// from `DETAIL_SAMPLES` to twice as many triangles, so that it fits in the memory reserve. In a scene with fewer

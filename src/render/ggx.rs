@@ -36,8 +36,9 @@ impl Lobe {
     /// holds for a `wi` that is sampled by reflecting `wo` about the normal from [`Lobe::sample_normal`]. `wi` must lie
     /// above the surface; `h` is the half vector.
     pub fn eval(&self, wi: Vec3, h: Vec3) -> (f32, f32) {
-        // Evaluate D(h) / (4 cos θo), the common factor of the BRDF and the pdf, with the distribution D of microfacet
-        // normals. In the pdf, `wo` · `h` cancels against the Jacobian of reflection.
+        // Evaluate D(h) / (4 cos θo), the common factor of the BRDF and the pdf. D is the distribution of microfacet
+        // normals, and θo is the angle between `wo` and the normal. In the pdf, `wo` · `h` cancels against the Jacobian
+        // of reflection.
         let a2 = self.alpha * self.alpha;
         let d = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
         let facets = 1.0 / (4.0 * PI * a2 * d * d * self.wo.z);
@@ -153,8 +154,9 @@ fn cosine_average(row: &[Vec2]) -> Vec2 {
 }
 
 fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
-    // Number of Hammersley points from which the directional albedo is estimated. The entries of the table are off by
-    // at most 1.3 / `N` of the light, so by 0.5 %; any value from 128 to 512 keeps this at 1 % or less. [convention]
+    // Number of Hammersley points from which the directional albedo is estimated. The error of a table entry is at most
+    // 1.3 / `N` of the incident light, which is 0.5 %. Any value from 128 to 512 keeps the error at 1 % or less.
+    // [convention]
     const N: u32 = 256;
     let wo = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let lobe = Lobe::new(wo, alpha);

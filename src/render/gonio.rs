@@ -1,17 +1,18 @@
 //! A goniophotometer: the luminous intensity distribution of emissive bodies, far away from them, in C planes (CIE
 //! 121).
 //!
-//! The intensity in a direction is the integral of the bodies' luminance towards it over a plane perpendicular to it.
-//! Parallel rays estimate the integral. Each starts at a random point of the box around the bodies, as seen from this
-//! direction, and path tracing estimates the luminance that it meets. So the intensity contains what the bodies hide
-//! from each other, reflect and transmit. The rest of the scene counts as absent.
+//! The intensity in a direction is the integral, over a plane perpendicular to the direction, of the luminance that the
+//! bodies have towards it. Parallel rays estimate the integral. Each ray starts at a random point of the box around the
+//! bodies, as seen from the direction, and path tracing estimates the luminance that the ray meets. The intensity
+//! therefore includes light that the bodies reflect and transmit, and excludes light that they block. The rest of the
+//! scene counts as absent.
 //!
-//! The luminous opening of the result is the box around the parts that emit, or the cylinder or ellipsoid in this box
-//! if its projected areas agree better with the luminous areas that the rays meet. Only light near the body, glare and
-//! pictures depend on it.
+//! The luminous opening of the result is the box around the parts that emit, or a cylinder or an ellipsoid that fills
+//! this box. The shape is chosen whose projected areas agree best with the luminous areas that the rays meet. The
+//! opening affects only light near the body, glare and pictures.
 //!
-//! Not modelled: the opening of a body whose light leaves through a translucent shade or from a reflector, because it
-//! is the opening of the parts that emit; punctual lights and luminaires of the scene; colour, which differs between
+//! Not modelled: the opening of a body whose light leaves through a translucent shade or from a reflector (the result
+//! has the opening of the parts that emit); punctual lights and luminaires of the scene; differences of colour between
 //! directions; the errors of linear interpolation between the angles, which the stated errors leave out.
 
 use super::bsdf::{Lobes, ScatterKind};
@@ -40,9 +41,9 @@ pub struct Params {
     /// Paths per direction, in `[16, 1 << 24]`; rounded up to a multiple of 16.
     pub samples: u32,
     pub seed: u64,
-    /// Unit direction in the scene of γ = 0.
+    /// Direction of γ = 0°: a unit vector in scene coordinates.
     pub axis: Vec3,
-    /// Unit direction in the scene of C = 0, perpendicular to `axis`.
+    /// Direction of C = 0° at γ = 90°: a unit vector in scene coordinates, perpendicular to `axis`.
     pub c0: Vec3,
 }
 
@@ -58,17 +59,17 @@ pub struct Output {
     pub luminaire: Luminaire,
     /// Centre of the luminous opening, in the coordinates of the scene.
     pub position: Vec3,
-    /// Standard error of the luminous flux in lumens.
+    /// Standard error of the luminous flux, in lumens.
     pub flux_error: f64,
-    /// Largest standard error of an intensity in candela.
+    /// Largest of the standard errors of all intensities, in candela.
     pub intensity_error: f64,
 }
 
 /// Number of independent estimates of each intensity; their variance gives the standard errors. With any number from 8
 /// to 32 the mean has the same expected value. [convention]
 const BATCHES: usize = 16;
-/// The shape of the luminous opening is chosen by the directions in which at least this share of the largest luminous
-/// area is seen. In other directions, a shade or the back of a flat lamp hides it. [convention]
+/// The shape of the luminous opening is chosen from the directions in which the rays meet at least this share of the
+/// largest luminous area. In other directions, a shade or the back of a flat lamp hides parts that emit. [convention]
 const MIN_LUMINOUS_SHARE: f64 = 0.9;
 /// Sides of the box around the emitting parts that are shorter than this share of its longest side count as 0.
 /// [rounding]
@@ -104,7 +105,8 @@ fn bodies(scene: &Scene, meshes: &[u32]) -> Result<Scene> {
     let mut chosen = try_vec(count, meshes.is_empty())?;
     meshes.iter().for_each(|mesh| chosen[*mesh as usize] = true);
     let kept = || scene.meshes.iter().zip(&chosen).filter(|(_, chosen)| **chosen).map(|(mesh, _)| mesh);
-    // Other textures become a single texel, so that the indices of the textures stay.
+    // Replace each texture that the chosen meshes do not use by a single texel: the indices of all textures stay the
+    // same.
     let mut used = try_vec(scene.textures.len(), false)?;
     for material in kept().filter_map(|mesh| scene.materials.get(mesh.material)) {
         let [base, layers] = [material.base_color_texture, material.metallic_roughness_texture];
@@ -161,7 +163,7 @@ impl LuminaireBox {
     }
 }
 
-/// The bodies in their box.
+/// The bodies to measure, with the boxes around them.
 struct Goniometer<'a> {
     world: World,
     params: &'a Params,
@@ -173,7 +175,7 @@ struct Goniometer<'a> {
     emitting: LuminaireBox,
 }
 
-/// The light in one direction.
+/// The measurement in one direction.
 struct Intensity {
     /// Independent estimates of the intensity in candela.
     batches: [f64; BATCHES],
@@ -189,7 +191,8 @@ impl<'a> Goniometer<'a> {
         let corners =
             meshes.iter().flat_map(|mesh| mesh.triangles.iter().flatten().map(|&i| mesh.positions[i as usize]));
         let extent = LuminaireBox::of(corners.map(|p| in_frame(world.from_scene(p))));
-        // The boxes of the pieces leave out the dark texels, but only the corners know the directions of the frame.
+        // The box around the corners of the emitters has the axes of the luminaire, but includes dark texels. The boxes
+        // around the emitters' pieces leave out dark texels, but have the axes of the world. Intersect both.
         let lights = world.lights();
         let of_corners = LuminaireBox::of(lights.emitters.emitters.iter().flat_map(|e| e.corners).map(in_frame));
         let of_pieces = LuminaireBox::of(lights.piece_corners().map(in_frame));
@@ -244,7 +247,7 @@ impl<'a> Goniometer<'a> {
         Intensity { batches, luminous_area: share * area }
     }
 
-    /// Assembles the distribution from what was measured in all [`directions`].
+    /// Assembles the distribution from the intensities measured in all [`directions`].
     fn output(&self, name: &str, measured: &[Intensity]) -> Result<Output> {
         let (planes, angles) = (self.params.planes as usize, self.params.angles as usize);
         let directions = directions(self.params);
@@ -278,9 +281,9 @@ impl<'a> Goniometer<'a> {
         })
     }
 
-    /// Returns the size of the luminous opening as in [`Luminaire::size`], where a minus sign stands for a round shape:
-    /// of the shapes that fill the box around the emitting parts, the one whose projected areas are nearest to the
-    /// luminous areas.
+    /// Returns the size of the luminous opening as in [`Luminaire::size`], where a minus sign stands for a round shape.
+    /// Of the shapes that fill the box around the emitting parts, chooses the one whose projected areas are nearest to
+    /// the measured luminous areas.
     fn size(&self, directions: &[[f64; 2]], measured: &[Intensity]) -> [f64; 3] {
         let size = self.emitting.size();
         let least = size.max_element() * FLAT;

@@ -1,5 +1,5 @@
 //! Illuminance in lux on a calculation grid or over a surface, with the standard error of every point. Lighting
-//! standards need it (EN 12464-1: mean and uniformity on task areas, walls and ceilings).
+//! standards set requirements for illuminance (EN 12464-1: mean and uniformity on task areas, walls and ceilings).
 //!
 //! The points of a grid may lie in free space. A surface is sampled by its texture coordinates: each texel of the
 //! result stands for the surface point at its centre.
@@ -160,9 +160,9 @@ fn summary(params: &Params, estimates: &[Option<(f64, f64)>]) -> Result<Output> 
 
 /// The calculation points, in the form from which [`Receivers::at`] makes the vertices of paths.
 enum Receivers {
-    /// A grid in world coordinates. Their origin suits the scene (`facet::centre`), so neighbouring points remain
-    /// distinct in f32 even if the scene's own coordinates are large. `across` and `down` are the steps between
-    /// neighbouring points.
+    /// A grid in world coordinates. The origin of these coordinates suits the scene (`facet::centre`), so neighbouring
+    /// points remain distinct in f32 even if the scene's own coordinates are large. `across` and `down` are the steps
+    /// between neighbouring points.
     Grid {
         origin: Vec3,
         across: Vec3,
@@ -216,7 +216,7 @@ fn receivers(world: &World, place: &CalculationPoints, params: &Params) -> Resul
 }
 
 /// Finds for each texel the triangle that covers the texel's centre, and the barycentric coordinates of the centre;
-/// `None` if no triangle does. If several triangles cover it, the one with the smallest index is used.
+/// `None` if no triangle covers the centre. If several triangles do, the one with the smallest index is used.
 fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32, Vec2)>>> {
     let meshes = &world.scene().meshes;
     let found = meshes

@@ -241,7 +241,7 @@ impl Recorder<'_> {
     }
 
     /// Ends the path, adds its light to the sums and returns its radiance in the main image. A path whose radiance is
-    /// not finite adds nothing.
+    /// not finite adds no light.
     #[inline]
     pub fn end_path(&mut self) -> Vec3 {
         if self.beauty.is_finite() {

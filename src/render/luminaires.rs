@@ -21,16 +21,17 @@ use std::sync::Arc;
 /// Distance in metres by which flat faces are moved outwards, so that a face in the plane of a ceiling lies in front of
 /// the ceiling. [convention]
 const GAP: f64 = 2e-4;
-/// Rays start at a distance off their surface, so that rounding does not make them hit it again. Let d be this distance
-/// at the largest coordinate of the scene, which counts as at most `facet::MAX_FREE_COORDINATE`. Flat faces are moved
-/// outwards by [`GAP`], or by this multiple of d if it is larger. Rounding then cannot close the gap. [rounding]
+/// Flat faces are moved outwards by [`GAP`], or by this multiple of d if that is larger. A ray starts at the distance d
+/// off its surface, so that rounding does not make it hit this surface again. Here d is taken at the largest coordinate
+/// of the scene, which counts as at most `facet::MAX_FREE_COORDINATE`. Rounding cannot close a gap of this size.
+/// [rounding]
 const GAP_OFFSETS: f64 = 8.0;
 /// The luminance is intensity / projected area. In this quotient, the area counts as at least this share of the
 /// opening's largest projected area along an axis of the luminaire. Otherwise a flat opening would have infinite
 /// luminance along its plane, where its projected area is 0. [rounding]
 const EDGE_ON: f64 = 1e-6;
-/// Steps in degrees, in C and in γ, of a grid of directions. The bounds on the intensities of patches are computed from
-/// the luminances in these directions. [convention]
+/// Steps of a grid of directions in degrees: the first in C, the second in γ. The bounds on the intensities of patches
+/// are computed from the luminances in these directions. [convention]
 const STEP: [usize; 2] = [15, 5];
 /// For light sampling, the bound on the intensity of a patch is at least this share of the largest such bound of the
 /// luminaire. [convention]
@@ -153,7 +154,7 @@ impl FaceLuminaire {
         self.position + self.frame[0] * local.x + self.frame[1] * local.y + self.frame[2] * local.z
     }
 
-    /// Returns the luminous flux in lumens, mean of the channels.
+    /// Returns the luminous flux in lumens, averaged over the channels.
     pub fn flux(&self) -> f64 {
         self.shape.flux * f64::from(self.emission.colour.element_sum() / 3.0)
     }
@@ -177,8 +178,8 @@ impl FaceLuminaire {
         })
     }
 
-    /// Returns the patches that emit: the range of their triangles, and their bounds for light sampling. A dark
-    /// luminaire has none. `strength` is the colour of the luminaire, mean of the channels.
+    /// Returns the range of triangles of each patch that emits, and the patch's bounds for light sampling. A dark
+    /// luminaire has no such patches. `strength` is the colour of the luminaire, averaged over the channels.
     pub fn patches(&self, strength: f32) -> impl Iterator<Item = (Range<usize>, Bounds)> {
         let patches = self.shape.faces.patches.iter().zip(&self.shape.intensity_bounds);
         patches.filter_map(move |(patch, intensity_bound)| {

@@ -21,8 +21,8 @@
 //! `denoise` filters noise and states the error that is left.
 //!
 //! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
-//! [`Requirements::left_out`] lists the glass solids and the frosted glass of a scene; in C,
-//! `luxfer_scene_get_requirements_text` does.
+//! [`Requirements::left_out`] lists the glass solids and the frosted glass of a scene. In C,
+//! `luxfer_scene_get_requirements_text` returns this list.
 
 mod aov;
 mod ballot;

@@ -17,8 +17,8 @@ const HEIGHTS: [f32; 2] = [0.35, 0.5];
 /// Numbers of columns and rows of rays whose mean length is the score of a camera.
 const RAYS: [usize; 2] = [12, 8];
 
-/// Returns the candidate camera whose rays have the largest mean length. A ray ends at its first hit; its length is at
-/// most the diagonal of the surface.
+/// Returns the candidate camera whose rays have the largest mean length. A ray ends at its first hit. A length above
+/// the diagonal of the surface counts as the diagonal.
 pub fn overview_camera(world: &World, surface: &Surface) -> Camera {
     let depth = depth_below(world.scene(), surface);
     let mut best = (f32::NEG_INFINITY, None);

@@ -262,7 +262,8 @@ pub(super) fn scatter<O: Observer>(
     Some(PathSegment { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, light_u })
 }
 
-/// Samples a light; `None` if the BSDF is purely specular (a mirror or a clear pane).
+/// Samples a light. `None` if no light can be sampled, or if the BSDF has no non-specular lobe (a mirror, a clear pane
+/// or a black surface).
 #[inline(always)]
 pub(super) fn sample_light(
     world: &World,
@@ -273,7 +274,8 @@ pub(super) fn sample_light(
     if bsdf.has_non_specular() { world.lights().sample(world.scene(), receiver, light_u) } else { None }
 }
 
-/// Samples the BSDF. Also returns the random numbers that select the light sample at the next vertex.
+/// Samples the BSDF. Also returns the random numbers that select the light sample at the next vertex. `None` if the
+/// sample carries no light.
 #[inline(always)]
 pub(super) fn sample_direction(bsdf: &Bsdf, sampler: &mut Sampler) -> Option<(BsdfSample, (f64, f32))> {
     let block = sampler.next();

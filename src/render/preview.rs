@@ -13,7 +13,7 @@ use crate::job::Job;
 const GUIDES: [Aov; 3] = [Aov::Albedo, Aov::Normal, Aov::Position];
 
 /// Returns a copy of the parameters. If a preview is requested, the copy also requests the guide images of the filter.
-/// Those that the caller has not requested come after the requested outputs.
+/// Guide images that the caller has not requested are appended to the requested outputs.
 pub fn guided(params: &Params) -> Params {
     let mut guided = params.clone();
     if params.preview > 0.0 {

@@ -57,10 +57,10 @@ impl Requirements {
     /// `error` is not positive, or if the largest channel of `albedo` is 1 or more.
     ///
     /// Let `a` be the largest channel of `albedo`: no surface reflects or transmits a larger share of light. So each
-    /// bounce carries at most `a` times the flux of the previous bounce, and less in open scenes. The share of the
-    /// flux that comes after `n` bounces is largest if every ratio equals `a`; it is then a^n. This bounds the loss of
-    /// flux in the whole scene. An image may lose more if it shows only a part of the scene that is lit by many
-    /// bounces.
+    /// bounce carries at most `a` times the flux of the previous bounce, and less in open scenes. If each bounce
+    /// carries exactly `a` times the flux of the previous one, the share of the flux that comes after `n` bounces is
+    /// a^n; otherwise it is smaller. This bounds the loss of flux in the whole scene. An image may lose more if it
+    /// shows only a part of the scene that is lit by many bounces.
     pub fn bounces(&self, error: f32) -> Option<u32> {
         let a = f64::from(self.albedo.max_element());
         if !(error > 0.0 && a < 1.0) {
@@ -153,8 +153,8 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
     // Mark the materials that meshes use (`used`). Also mark those that have a triangle of positive area (`spread`): no
     // other material can emit.
     let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
-    // Find, for each material, the range of the vertex colours that multiply it. A mesh without vertex colours counts
-    // as 1.
+    // Find, for each material, the range of the vertex colours that multiply its base colour and its opacity. A mesh
+    // without vertex colours counts as having the colour 1.
     let none = Range { low: Vec4::INFINITY, high: Vec4::NEG_INFINITY };
     let mut tints = vec![none; scene.materials.len()];
     for mesh in scene.meshes.iter().filter(|m| !m.triangles.is_empty()) {
@@ -331,9 +331,9 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// Returns the BSDF parameters of a material for the four combinations of its smallest or largest metalness with its
-/// smallest or largest roughness. All parameters of the layers are linear or monotone in between, so these are the
-/// extremes.
+/// Returns the BSDF parameters of a material, with its largest base colour, for the four combinations of its smallest
+/// or largest metalness with its smallest or largest roughness. All parameters of the layers are linear or monotone in
+/// metalness and roughness, so their extremes are among these combinations.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = BsdfParams> {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);
@@ -345,8 +345,8 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::bsdf_params(material, colour, m, r)))
 }
 
-/// Returns the largest albedo, over all directions of incidence, with the BSDF parameters `s`. The error is at most
-/// 0.003, because the albedo is evaluated at a finite number of directions.
+/// Returns the largest albedo, over all directions of incidence, with the BSDF parameters `s`. The result may be up to
+/// 0.003 too small, because the albedo is evaluated at a finite number of directions.
 fn albedo_bound(s: &BsdfParams, table: Option<&AlbedoTable>) -> Vec3 {
     // Number of intervals between the cosines at which the albedo is evaluated. With 32 to 128 intervals, the result
     // may be up to 0.003 below the largest albedo, which is less than the error of the table. [convention]

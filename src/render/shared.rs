@@ -172,8 +172,8 @@ pub fn trace<W: ReplayObserver>(
     }
 }
 
-/// Traces a path to its primary vertex. Returns `None` if there is no such vertex or if it cannot take part in sharing;
-/// the path is then traced to its end.
+/// Traces a path to its primary vertex. Returns `None` if there is no primary vertex, or if the primary vertex cannot
+/// take part in sharing; the path is then traced to its end.
 fn trace_primary<'w, W: ReplayObserver>(
     world: &'w World,
     start: &mut Start,

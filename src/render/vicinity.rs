@@ -32,8 +32,8 @@ const MARGIN: f32 = 1.0 / (1 << 16) as f32;
 const MIN_RATIO: usize = 4;
 
 /// A random sample of the positions of vertices, to which all threads of a render add. The sample does not depend on
-/// the order of the additions: each position has a random entry and a random priority, and each entry keeps the
-/// coordinates with the highest priority (for each axis on its own).
+/// the order of the additions: each position has a random entry and a random priority. For each axis separately, an
+/// entry keeps the coordinate with the highest priority.
 pub struct PositionReservoir {
     /// For each axis of each entry, the priority (upper 32 bits) and the bits of the f32 coordinate (lower 32 bits); 0
     /// if empty.
@@ -82,8 +82,8 @@ pub struct Vicinity {
 
 impl Vicinity {
     /// Builds the structure of the triangles around the given positions. `all` is the structure of the scene, which has
-    /// `count` triangles. Returns `None` if there are too few positions, if no triangle meets the box, or if more than
-    /// `max` triangles or more than `count / MIN_RATIO` triangles do.
+    /// `count` triangles. Returns `None` if there are too few positions, if no triangle meets the box around them, or
+    /// if more than `max` or more than `count / MIN_RATIO` triangles meet it.
     pub fn new(all: &Accel, count: usize, positions: &PositionReservoir, max: usize) -> Result<Option<Self>> {
         let sorted = positions.sorted()?;
         let Some(few) = sorted.iter().map(Vec::len).min().filter(|&n| n >= MIN_POSITIONS) else { return Ok(None) };

@@ -161,8 +161,9 @@ impl World {
         Ok(Self { lights: world.lights.clone().settled(), ..world })
     }
 
-    /// Builds the structure `vicinity` from the vertices recorded so far. Keeps the present one if it still fits these
-    /// vertices, or if no structure may be built.
+    /// Builds the structure `vicinity` from the vertices recorded so far. Keeps the present structure if it still fits
+    /// these vertices, if no vertices are recorded, or if `may_build_vicinity` is false. The result has no structure if
+    /// [`Vicinity::new`] builds none.
     fn with_vicinity(self) -> Result<Self> {
         let Some((positions, counted)) = self.lights.positions()?.filter(|_| self.may_build_vicinity) else {
             return Ok(self);

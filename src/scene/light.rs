@@ -29,8 +29,9 @@ pub fn check_light(what: &str, light: Vec3) -> Result<()> {
 pub enum PunctualLight {
     /// Isotropic luminous intensity per channel in cd.
     Point { position: Vec3, intensity: Vec3 },
-    /// `intensity` is the luminous intensity per channel on the axis, in cd. Off the axis, the intensity is the same up
-    /// to the inner cone angle, and falls to 0 at the outer one as glTF prescribes. Both are half-angles in radians.
+    /// `intensity` is the luminous intensity per channel on the axis, in cd. Up to `inner_angle` from the axis, the
+    /// intensity stays the same. From there it falls to 0 at `outer_angle`, as glTF prescribes. Both angles are in
+    /// radians, from the axis to the side of a cone.
     Spot { position: Vec3, direction: Vec3, intensity: Vec3, inner_angle: f32, outer_angle: f32 },
     /// Illuminance per channel in lux on a surface perpendicular to `direction`, along which the light travels.
     Directional { direction: Vec3, illuminance: Vec3 },

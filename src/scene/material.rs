@@ -49,7 +49,8 @@ pub struct Material {
     /// texture.
     pub emission: Vec3,
     pub emission_texture: Option<TextureRef>,
-    /// Whether back faces emit as front faces do. Back faces always reflect and block light as front faces do.
+    /// If true, back faces emit the same light as front faces; if false, they emit none. In both cases, back faces
+    /// reflect and block light like front faces.
     pub double_sided: bool,
     /// Share of the light entering through the dielectric surface that is transmitted rather than reflected diffusely;
     /// in `[0, 1]`.

@@ -49,8 +49,9 @@ impl Mesh {
     /// Whether the triangles are consistently wound and enclose a volume. In such a mesh every edge is traversed
     /// equally often in both directions. Vertices at equal positions count as one vertex.
     ///
-    /// Each directed edge has a hash, and the function sums the hashes of all edges minus those of the reversed edges.
-    /// The sum needs no memory; it is 0 by chance for one open mesh in 2^64.
+    /// The function computes a hash for each directed edge. It sums the hashes of all edges and subtracts the hashes of
+    /// the reversed edges. The sum needs no memory, and it is 0 if the mesh is closed. For an open mesh, it is 0 by
+    /// chance with probability 2^-64.
     pub fn is_closed(&self) -> bool {
         // Add zero, which turns -0 into +0, so that zeros of either sign hash alike.
         let place = |p: Vec3| hash(0, &(p + Vec3::ZERO).to_array().map(|v| v.to_bits().into()));

@@ -1,4 +1,4 @@
-//! Finds the place where most of a scene lies. Most positions relative to this place are small, so that `f32` stores
+//! Finds a point near which most of a scene lies. Most positions relative to this point are small, so that `f32` stores
 //! them precisely.
 
 use glam::DVec3;

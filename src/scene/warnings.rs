@@ -28,8 +28,8 @@ const MAX_LISTED: usize = 3;
 /// Units smaller than the metre in which modelling programs write scenes, with their length in metres. [convention]
 const SMALL_UNITS: [(&str, f64); 3] = [("the millimetre", 0.001), ("the centimetre", 0.01), ("the inch", 0.0254)];
 
-/// Units larger than the metre, with their length in metres: one of them is suggested for a scene that was scaled down
-/// once too often. [convention]
+/// Units larger than the metre, with their length in metres. A warning suggests one of them for a scene that is too
+/// small because it was scaled down once too often. [convention]
 const LARGE_UNITS: [(&str, f64); 3] = [("ten metres", 10.0), ("a hundred metres", 100.0), ("the kilometre", 1000.0)];
 
 /// Maximum distance in metres between neighbouring `f32` values at the scene's largest coordinate: half a millimetre.

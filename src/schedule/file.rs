@@ -43,7 +43,7 @@ fn row(fixture: &Fixture) -> [f64; 19] {
     })
 }
 
-/// Formats a number so that every reader accepts it: without an exponent; NaN and infinite values become 0.
+/// Formats a number without an exponent, so that every reader accepts it. NaN and infinite values become 0.
 fn number(value: f64) -> String {
     let rounded: f64 = format!("{value:.6e}").parse().unwrap_or(0.0);
     if rounded.is_finite() { rounded.to_string() } else { "0".into() }

@@ -1,6 +1,6 @@
-//! Applies the classifier to the whole image, in tiles of pixels along the rows. Within a tile, the values of each
-//! feature are contiguous. Two kinds of quadratic forms of the features are evaluated: the logit, and the squared
-//! distance of a pixel from the centre of each class ([`Ellipsoid`]).
+//! Applies the classifier to the whole image. Each row is processed in tiles of up to 64 neighbouring pixels; within a
+//! tile, the values of each feature are contiguous. Two kinds of quadratic forms of the features are evaluated: the
+//! logit, and the squared distance of a pixel from the centre of each class ([`Ellipsoid`]).
 
 use super::ellipsoid::Ellipsoid;
 use super::exponential::exp_f32;
@@ -169,9 +169,9 @@ impl QuadraticForm {
 struct Answer {
     mask: [f32; TILE],
     probability: [f32; TILE],
-    /// How far the features lie outside the ellipsoids of both classes, in `[0, 1]`: 0 inside either, else
-    /// `1 - e^(1 - d)`. The distance d is √q, where q is the smaller of the two forms [`Classifier::seen`]; it is 1 on
-    /// an ellipsoid.
+    /// How far the features lie outside the ellipsoids of both classes, in `[0, 1]`: 0 inside an ellipsoid, else
+    /// `1 - e^(1 - d)`. The distance d is √q, where q is the smaller of the two forms [`Classifier::seen`]. On an
+    /// ellipsoid, d is 1.
     unseen: [f32; TILE],
     /// Whether all distances are finite, which implies that all features in `channels` are finite.
     all_finite: bool,
@@ -201,8 +201,9 @@ widest! {
         classifier.standardise(pixels, channel_count, tile);
         let planes = &tile.all[..classifier.channels.len()];
 
-        // Find the squared distance from the nearer ellipsoid. If the first ellipsoid contains all pixels, `unseen` is
-        // 0 for all of them, and the second ellipsoid need not be evaluated.
+        // For each pixel, find the smaller of the squared distances from the centres of the two ellipsoids. If the
+        // first ellipsoid contains all pixels, `unseen` is 0 for all of them, and the second ellipsoid need not be
+        // evaluated.
         let mut nearest = [f32::INFINITY; TILE];
         let mut all_within = false;
         for turn in 0..classifier.seen.len() {
@@ -245,8 +246,8 @@ widest! {
     }
 }
 
-/// Classifies every pixel by its features; `channels` holds the image channel of each column of the samples. Outside
-/// the region (`region` at most 0.5) all results are 0.
+/// Classifies every pixel of `features`. The samples store some of the image's channels, one per column: `channels[i]`
+/// is the image channel in column i. If `region` is given, the results are 0 where it is at most 0.5.
 pub fn run(
     features: &Image,
     region: Option<&Image>,
@@ -313,7 +314,7 @@ widest! {
     }
 }
 
-/// The sum of all values, through eight partial sums.
+/// Returns the sum of all values. It is computed as eight partial sums, which compilers vectorise.
 fn sum_of(values: &[f32]) -> f32 {
     let (chunks, rest) = values.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -167,8 +167,8 @@ mod tests {
         };
         let within = (0..400).step_by(2).filter(|&i| at(rows[3 * i], rows[3 * i + 2]) <= 1.0 + 1e-12).count();
         assert_eq!(within, 198);
-        // At six standard deviations along either axis, the Mahalanobis distance is equal, although the deviations
-        // differ.
+        // Two points lie six standard deviations from the centre, one along each axis. Their Mahalanobis distances must
+        // be nearly equal, although the standard deviations differ.
         let (x, y) = (region.centre[0], region.centre[1]);
         let (along, across) = (at(x + 18.0, y), at(x, y + 6.0 * 0.51));
         assert!((along / across).ln().abs() < 0.3, "{along} {across}");

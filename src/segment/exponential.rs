@@ -19,7 +19,7 @@ pub fn exp_f32(x: f32) -> f32 {
 /// Computes `eˣ` to a relative error below 1e-12; `x` is clamped to `[-708, 709]`.
 #[inline(always)]
 pub fn exp_f64(x: f64) -> f64 {
-    // As in `exp_f32`, with 1.5 × 2⁵². [paper: Cody and Waite 1980]
+    // `LN_2` and `ROUND` serve as in `exp_f32`; `ROUND` is 1.5 × 2⁵². [paper: Cody and Waite 1980]
     const LN_2: [f64; 2] = [0.693_147_180_369_123_8, 1.908_214_929_270_587_7e-10];
     const ROUND: f64 = 6_755_399_441_055_744.0;
     /// Taylor coefficients `1 / k!` for k from 10 down to 0; the next term is below 1e-12 of the sum. [rounding]

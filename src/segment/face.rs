@@ -11,9 +11,9 @@ use crate::features::{CHANNELS, NORMAL, POSITION};
 use crate::image::{Image, try_collect, try_push, try_vec};
 use glam::Vec3;
 
-/// Minimum cosine of the angle between two normals of the same face; the angle is at most 45 degrees. [convention]
+/// Minimum cosine between two normals of the same face: the normals differ by at most 45 degrees. [convention]
 const SAME_FACE: f32 = std::f32::consts::FRAC_1_SQRT_2;
-/// Pixels lie on one face if the normals of at least this share of them agree with the mean normal (see
+/// Pixels lie on one face if at least this share of their normals agree with their common normal (see
 /// [`agreed_normal`]). [judged on 28 photos]
 const AGREEMENT: f64 = 0.9;
 
@@ -21,15 +21,17 @@ const AGREEMENT: f64 = 0.9;
 /// normals of a depth map do not. [rounding]
 const EQUAL: f32 = 1.0 - 1e-4;
 
-/// The normal of the face that the positive strokes lie on, in a room laid out as a box; otherwise `None`.
+/// The normal of the face that the positive strokes lie on, in a room laid out as a box. `None` if the room is not laid
+/// out as a box, or if the strokes lie on several faces.
 ///
-/// If there is such a normal, the mask is restricted to this face anyway. The classifier must then not use position:
+/// If there is such a normal, the mask is later restricted to this face. The classifier must then not use position:
 /// otherwise it might cut off the parts of the face that are far from all positive strokes.
 pub fn laid_out(input: &Input) -> Option<Vec3> {
     stroked_normal(input, EQUAL)
 }
 
-/// The normal of the face that a mask covers, in a room laid out as a box; otherwise `None`.
+/// The normal of the face that a mask covers, in a room laid out as a box. `None` if the room is not laid out as a box,
+/// or if the mask covers several faces.
 pub fn laid_out_under(features: &Image, mask: &Image) -> Option<Vec3> {
     agreed_normal(features, || marked(mask), EQUAL)
 }
@@ -139,16 +141,17 @@ fn normal_at(features: &Image, pixel: usize) -> Vec3 {
     Vec3::new(n[0], n[1], n[2])
 }
 
-/// The common normal of the pixels of the positive strokes, as for [`agreed_normal`].
+/// Returns the common normal of the pixels under the positive strokes ([`agreed_normal`]), or `None` if they have none.
 fn stroked_normal(input: &Input, cosine: f32) -> Option<Vec3> {
     let count = input.features.width * input.features.height;
     let strokes = || input.strokes.iter().filter(|s| s.positive).flat_map(|s| &s.pixels);
     agreed_normal(input.features, || strokes().map(|&p| p as usize).filter(|p| *p < count), cosine)
 }
 
-/// The common normal of the given pixels: the mean of their normals without outliers. `None` unless at least the share
-/// [`AGREEMENT`] of the pixels agree with it; a pixel agrees if the cosine between its normal and the common one is at
-/// least `cosine`. Also `None` if the features have no normals (fewer or more than [`CHANNELS`] channels).
+/// Returns the common normal of the given pixels: the mean of their normals, computed without outliers. A pixel agrees
+/// with the common normal if the cosine between its own normal and the common one is at least `cosine`. `None` unless
+/// at least the share [`AGREEMENT`] of the pixels agree. Also `None` if the features have no normals (fewer or more
+/// than [`CHANNELS`] channels).
 fn agreed_normal<I: Iterator<Item = usize>>(features: &Image, pixels: impl Fn() -> I, cosine: f32) -> Option<Vec3> {
     if features.channels != CHANNELS {
         return None;

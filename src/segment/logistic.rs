@@ -15,7 +15,7 @@ pub struct Problem<'a> {
     pub weights: &'a [f64],
 }
 
-/// The objective of a fit and its derivatives, at given weights of the terms.
+/// The objective of a fit and its first and second derivatives, for given weights of the terms.
 pub struct Objective {
     pub value: f64,
     pub gradient: Vec<f64>,

@@ -88,7 +88,8 @@ impl Refinement<'_> {
         self.region.map_or(1.0, |region| f64::from(region.data[y * region.width + x] > 0.5))
     }
 
-    /// Adds the moments of a row's pixels to the sums of their columns (`sign` 1), or subtracts them (-1).
+    /// Adds the moments of row `y`'s pixels to the sums of their columns if `sign` is 1, or subtracts them if `sign` is
+    /// -1.
     fn add_moments(&self, y: usize, sign: f64, columns: &mut [Moments]) {
         let row = MomentRow { features: self.features.row(y), probability: self.confidence.row(y), sign };
         match self.region {
@@ -104,14 +105,14 @@ struct MomentRow<'a> {
     sign: f64,
 }
 
-/// The sums of every column over the window rows around row `y`.
+/// For each column of the image, the sums of its moments over the rows of the windows around row `y`.
 struct Line<'a> {
     y: usize,
     columns: &'a [Moments],
 }
 
-/// Slides the window of rows that the running sums cover: adds the rows that enter it, and subtracts the rows that
-/// leave it.
+/// Moves running sums from the rows `held` to the rows `wanted`: calls `add(y, 1.0)` for each row that enters, and
+/// `add(y, -1.0)` for each row that leaves. Then sets `held` to `wanted`.
 fn slide(held: &mut Range<usize>, wanted: Range<usize>, mut add: impl FnMut(usize, f64)) {
     (held.end.max(wanted.start)..wanted.end).for_each(|y| add(y, 1.0));
     (held.start..held.end.min(wanted.start)).for_each(|y| add(y, -1.0));

@@ -176,7 +176,7 @@ pub fn unlabelled(input: &Input, channels: &[usize]) -> Vec<f64> {
 }
 
 /// Distributes `total` samples in equal shares over strokes of the given sizes in pixels. If a stroke has fewer pixels
-/// than its share, the rest of its share goes to larger strokes.
+/// than its share, the samples that it cannot supply are taken from larger strokes.
 fn shares(sizes: &[usize], total: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..sizes.len()).collect();
     order.sort_by_key(|&i| (sizes[i], i));

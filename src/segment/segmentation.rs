@@ -50,9 +50,9 @@ pub struct Segmentation {
     /// Whether the mask is a proposal because strokes were missing: for a plane, the strokes of at least one class;
     /// for lamps, the positive strokes.
     pub is_proposed: bool,
-    /// For lamps only: regions outside the given plane mask that are probably lamps. They lie in a row with lamps and,
-    /// measured as if the plane continued there, have the same size and shape. They suggest that the room is larger
-    /// than its layout.
+    /// For lamps only: regions outside the given plane mask that are probably lamps. Each of them lies in a row with
+    /// lamps that were found. Measured as if the plane continued there, it has the size and the shape of these lamps.
+    /// Such regions suggest that the room is larger than its layout.
     pub beyond: Vec<Stroke>,
 }
 

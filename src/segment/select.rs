@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::job::Job;
 
-/// Maximum number of folds. If there are more strokes, a fold holds several strokes.
+/// Maximum number of folds of cross-validation. If there are more strokes than this, a fold holds several strokes.
 const FOLDS: usize = 8;
 /// Approximate maximum number of samples per class in the fits of cross-validation. This number is enough to tell which
 /// of two models is better.
@@ -24,11 +24,11 @@ const CV_SAMPLES: usize = 250;
 /// Range of the calibration factor on logits. A handful of strokes does not justify a larger correction.
 /// [bench segment:masks]
 const CALIBRATION: [f64; 2] = [0.1, 2.0];
-/// A fit ends with the first step whose expected decrease of the objective (see `logistic::fit`) is below this value.
-/// `CV_PRECISION` applies to fits that only compare models. With the default number of samples, the price of a term is
-/// 1 / 2000 (see [`choose`]), which is 50 times `CV_PRECISION`. `PRECISION` applies to the final fit. Newton's method
-/// converges quadratically: after a step that lowers the objective by d, a further decrease of the order of d² remains.
-/// Any `PRECISION` from 1e-12 to 1e-7 therefore gives the same fit. [convention]
+/// A fit ends with the first Newton step whose expected decrease of the objective (see `logistic::fit`) is below a
+/// limit. `CV_PRECISION` is the limit in fits that only compare models. With the default number of samples, the price
+/// of a term is 1 / 2000 (see [`choose`]), which is 50 times `CV_PRECISION`. `PRECISION` is the limit in the final fit.
+/// Newton's method converges quadratically: after a step that lowers the objective by d, a further decrease of the
+/// order of d² remains. Any `PRECISION` from 1e-12 to 1e-7 therefore gives the same fit. [convention]
 const CV_PRECISION: f64 = 1e-5;
 const PRECISION: f64 = 1e-9;
 
@@ -204,7 +204,8 @@ fn stride(samples: &Samples, positive: bool) -> usize {
     samples.counts[usize::from(positive)].div_ceil(CV_SAMPLES)
 }
 
-/// Weights that give both classes the same total, whatever the numbers of `used` samples. Unused samples get 0.
+/// Returns a weight for each sample. The weights of the `used` samples sum to 0.5 in each class, whatever their number.
+/// The weights of unused samples are 0.
 fn balanced(positive: &[bool], used: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut counts = [0usize; 2];
     (0..positive.len()).filter(|&i| used(i)).for_each(|i| counts[usize::from(positive[i])] += 1);

@@ -77,9 +77,9 @@ fn the_ceiling_then_its_lamps() {
     let plane = segment(&features, &plane_strokes(), None, &Params::default()).unwrap();
     let agreement = iou(&plane.mask, |i| faces[i] == 0 || faces[i] == 5);
     assert!(agreement >= 0.97, "{agreement} {:?}", plane.model);
-    // The expected error must be at least the true one. It is larger, because most surfaces have only one stroke: when
-    // cross-validation holds this stroke out, it trains without the surface. The error on such strokes is assumed for
-    // all pixels whose features are unlike those of the painted pixels.
+    // The expected error must be at least the true error. The expected error is larger, because most surfaces have only
+    // one stroke: when cross-validation holds this stroke out, it trains without the surface. The error on such strokes
+    // is assumed for all pixels whose features are unlike those of the painted pixels.
     let is_wrong = |(i, m): (usize, &f32)| (*m > 0.5) != (faces[i] == 0 || faces[i] == 5);
     let wrong = plane.mask.data.iter().enumerate().filter(|&p| is_wrong(p)).count() as f64 / faces.len() as f64;
     assert!(wrong <= plane.error && plane.error < 0.1, "{wrong} {}", plane.error);
@@ -134,8 +134,8 @@ fn a_stroke_on_a_wrong_region_mends_it() {
     let few = segment(&features, &strokes[..3], None, &Params::default()).unwrap();
     let all = segment(&features, &strokes, None, &Params::default()).unwrap();
     assert!(iou(&all.mask, is_ceiling) >= iou(&few.mask, is_ceiling));
-    // Less than 5 % of the pixels under each of the later strokes may lie in the mask. With these strokes, the mean of
-    // `unseen` under them must be below 0.1, and not higher than without them.
+    // Test each stroke that only the second segmentation (`all`) uses: less than 5 % of its pixels may lie in the mask,
+    // and the mean of `unseen` over its pixels must be below 0.1 and not higher than in the first segmentation (`few`).
     for stroke in &strokes[3..] {
         let inside = stroke.pixels.iter().filter(|&&p| all.mask.data[p as usize] > 0.5).count();
         assert!(inside * 20 < stroke.pixels.len());
@@ -362,7 +362,7 @@ fn channels_are_chosen_unless_they_are_given() {
         assert_eq!(given.channels, subset);
         assert!(iou(&chosen.mask, is_ceiling) >= iou(&given.mask, is_ceiling) - 0.01, "{subset:#b}");
     }
-    // If colour alone separates the classes under all strokes, the simplest subset, colour, is chosen.
+    // If colour alone separates the classes under all strokes, the simplest subset must be chosen, which is colour.
     let painted = Image::from_fn(WIDTH, HEIGHT, |x, y| {
         let hash = Rng::new(3, &[x as u64, y as u64]).next_f32();
         let lightness = if is_ceiling(y * WIDTH + x) { 80.0 } else { 20.0 };

@@ -12,19 +12,19 @@ const MAX_UNSEEN: f64 = 0.2;
 /// Value of `unseen` above which a pixel counts as unlike every stroke. [convention]
 const UNSEEN: f32 = 0.5;
 /// A warning is given if the number of pixels under strokes of both classes, divided by the number of samples, exceeds
-/// this. [judged on 38 photos]
+/// this value. [judged on 38 photos]
 const MAX_CONTRADICTORY: f64 = 0.05;
-/// A warning is given if the number of stroke pixels outside the photo, divided by the number of samples, exceeds
-/// this. [judged on 38 photos]
+/// A warning is given if the number of stroke pixels outside the photo, divided by the number of samples, exceeds this
+/// value. [judged on 38 photos]
 const MAX_OFF_IMAGE: f64 = 0.05;
-/// A warning is given if the expected share of wrong pixels exceeds this. [judged on 38 photos]
+/// A warning is given if the expected share of wrong pixels exceeds this value. [judged on 38 photos]
 const MAX_ERROR: f64 = 0.1;
 /// A warning is given if the mask assigns more than this share of the painted pixels to the wrong class.
 /// [judged on 38 photos]
 const MAX_MISSED: f64 = 0.1;
-/// A warning is given if the probability that a pixel painted as light is brighter than a pixel of the plane is below
-/// this. The probability is below 0.83 on the three of 44 photos whose lamps are off or shine away from the camera,
-/// and above 0.85 on the others. [judged on 44 photos]
+/// A warning is given if a random pixel painted as light is brighter than a random pixel of the plane with a
+/// probability below this. Of 44 photos, the probability is below 0.83 on the three whose lamps are off or shine away
+/// from the camera, and above 0.85 on the others. [judged on 44 photos]
 const MIN_BRIGHTER: f64 = 0.85;
 /// A warning is given if lamps cover more than this share of the plane. [judged on 38 photos]
 const MAX_LIT: f64 = 0.4;
@@ -53,8 +53,9 @@ impl Segmentation {
         self.samples != [0, 0]
     }
 
-    /// How doubtful a pixel is: its value in `unseen` if it belongs to the mask or may belong to a lamp, else 0. For
-    /// lamps, `unseen` marks doubtful regions, which lie outside the mask.
+    /// How doubtful a pixel is, from 0 to 1. If the mask is of a surface: `unseen` for the pixels in the mask, 0 for
+    /// the others. If the mask is of lamps: `unseen` for all pixels, because `unseen` then marks regions outside the
+    /// mask that may be lamps.
     fn doubt(&self, pixel: usize) -> f32 {
         if self.is_of_lamps || self.mask.data[pixel] > 0.5 { self.unseen.data[pixel] } else { 0.0 }
     }
@@ -150,7 +151,8 @@ impl Segmentation {
             let count = wrong().count();
             painted += stroke.pixels.len();
             missed += count;
-            // Show a place on the stroke with the most wrong pixels: the middle one of these pixels.
+            // The warning points to the stroke with the most wrong pixels, at the middle one in the list of these
+            // pixels.
             if count > largest.0 {
                 largest = (count, wrong().nth(count / 2));
             }
@@ -170,7 +172,7 @@ impl Segmentation {
         let (width, height) = (self.mask.width, self.mask.height);
         let side = width.max(height).div_ceil(CELLS).max(1);
         let (columns, rows) = (width.div_ceil(side), height.div_ceil(side));
-        // Sum the doubt over cells; `around` then sums over a cell and its neighbours.
+        // Sum the doubt over each cell. The function `around` then adds the sums of a cell and its neighbours.
         let mut cells = vec![0.0f64; columns * rows];
         for y in 0..height {
             for x in 0..width {
@@ -196,7 +198,8 @@ impl Segmentation {
     }
 }
 
-/// Warns if lights cover more of their plane than lamps usually do. Returns `None` for masks of different sizes.
+/// Warns if lights cover more of their plane than lamps usually do. `None` if they do not, or if the masks differ in
+/// size.
 pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
     let shape = |mask: &Image| [mask.width, mask.height, mask.channels];
     if shape(lights) != shape(plane) {
@@ -231,8 +234,9 @@ pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Optio
 }
 
 /// Computes the probability that a random lamp pixel is brighter than a random plane pixel: the area under the receiver
-/// operating characteristic of L* (Hanley and McNeil 1982). Also returns a pixel of one lamp stroke: the stroke whose
-/// own pixels have the least probability. `None` if there is no lamp pixel or no plane pixel.
+/// operating characteristic of L* (Hanley and McNeil 1982). This probability is also computed for each lamp stroke
+/// alone. The second result is a pixel of the stroke for which it is least. `None` if there is no lamp pixel or no
+/// plane pixel.
 fn brighter(features: &Image, lamps: &[&Stroke], plane: &[&Stroke]) -> Option<(f64, u32)> {
     let lightness = |&p: &u32| features.data.get(p as usize * features.channels).copied();
     let mut plane: Vec<f32> = plane.iter().flat_map(|s| &s.pixels).filter_map(lightness).collect();

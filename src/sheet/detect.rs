@@ -12,8 +12,9 @@ const MAX_SIDE: usize = 1400;
 /// Standard deviations of the blur before the search, in pixels of the reduced image. These scales find marks of four
 /// to about forty pixels across. [convention: a scale space in octaves]
 const SCALES: [f32; 3] = [1.5, 3.0, 6.0];
-/// A saddle is compared with all positions within `NEIGHBOURHOOD` times the deviation of the blur. The quadrants around
-/// it must show on two circles; `CIRCLES` has their radii in units of this deviation. [bench constants:sheet]
+/// A saddle is compared with all positions within `NEIGHBOURHOOD` times the standard deviation of the blur. The
+/// quadrants around the saddle must show on two circles; `CIRCLES` has their radii in units of this deviation.
+/// [bench constants:sheet]
 const NEIGHBOURHOOD: f32 = 1.5;
 const CIRCLES: [f64; 2] = [1.6, 2.2];
 /// Minimum distance between two candidates, in pixels of the reduced image. Several scales find the same mark; of
@@ -23,14 +24,14 @@ const MIN_DISTANCE: f64 = 6.0;
 const MAX_CANDIDATES: usize = 24;
 /// Minimum share of the second harmonic (two periods per turn) in the variance of brightness along a circle around a
 /// mark. An ideal mark gives two periods of a square wave, with a share of 8 / π² = 0.81. If the sheet is tilted, the
-/// edges of the mark may cross at a smaller angle: tilted by 45°, it has a share of at least 0.75, by 60° of at least
-/// 0.62. The right-angled corner of a black area, which is no mark, gives 0.27. Any value from 0.3 to 0.6 separates the
-/// two. [convention]
+/// edges of the mark may cross at a smaller angle: a mark tilted by 45° has a share of at least 0.75, one tilted by 60°
+/// of at least 0.62. The right-angled corner of a black area, which is no mark, gives 0.27. Any value from 0.3 to 0.6
+/// separates marks from such corners. [convention]
 const MIN_HARMONIC: f64 = 0.55;
 /// Minimum amplitude of the second harmonic, which measures the contrast of black and white in encoded brightness.
 /// Paper that reflects 80 % with black that reflects 5 % gives 0.13 if it is underexposed by four f-stops. Pixel noise
-/// with a standard deviation of 0.03 gives, on the smallest circle (15 pixels), more than 0.05 in one of 30,000 places.
-/// Any value from 0.05 to 0.13 separates the two. [convention]
+/// with a standard deviation of 0.03 gives, on the smallest circle (15 pixels), more than 0.05 at one of 30,000
+/// positions. Any value from 0.05 to 0.13 separates marks from noise. [convention]
 const MIN_CONTRAST: f64 = 0.06;
 
 /// A position that looks like a mark.
@@ -117,7 +118,7 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
 const MIN_RESPONSE: f32 = 2e-4;
 
 /// Returns how strongly two dark and two bright quadrants alternate on a circle around a position: the amplitude of the
-/// second harmonic times its share of the variance. Returns 0 if either is too small for a mark.
+/// second harmonic times its share of the variance. Returns 0 if the amplitude or the share is too small for a mark.
 fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     const STEPS: usize = 32;
     let value = |i: usize| {

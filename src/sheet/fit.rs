@@ -17,9 +17,9 @@ const MIN_MARKS: usize = 6;
 const FIRST_TOLERANCE: f64 = 0.02;
 const FINAL_TOLERANCE: f64 = 0.004;
 
-/// Half-side of the window in which a mark is refined. `WINDOW`: as a share of the mark's radius; the choice is free up
-/// to 1/√2 = 0.7, from which on the corners of the window leave the mark. `MIN_WINDOW`: its minimum in pixels.
-/// [convention]
+/// Half-side of the square window in which a mark is refined: `WINDOW` times the mark's radius, but at least
+/// `MIN_WINDOW` pixels. Any `WINDOW` up to 1/√2 = 0.7 serves, because the corners of the window then lie inside the
+/// mark. [convention]
 const WINDOW: f64 = 0.6;
 const MIN_WINDOW: f64 = 2.0;
 
@@ -82,10 +82,10 @@ struct Guess {
     misfit: f64,
 }
 
-/// Finds the map from page to photo under which most marks coincide with candidates; among equal numbers, the one with
-/// the smallest misfit. `None` if no map makes [`MIN_MARKS`] marks coincide. Tries every quadruple of candidates as the
-/// four corner marks and as the four midpoint marks, each in four rotations. If one mark is missing, the corners or the
-/// midpoints are still complete.
+/// Finds the map from page to photo. Tries every quadruple of candidates as the four corner marks and as the four
+/// midpoint marks, each in four rotations; if one mark is missing, the corners or the midpoints are still complete.
+/// Returns the map under which most marks coincide with candidates; of maps with equal numbers, the one with the
+/// smallest misfit. `None` if no map makes [`MIN_MARKS`] marks coincide.
 fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();
     let mut best: Option<Guess> = None;

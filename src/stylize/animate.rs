@@ -41,9 +41,9 @@ pub(super) struct Moved {
 }
 
 /// Advects the field (the matches) of the previous frame into this frame. `motion` leads from each pixel to the
-/// position of the same surface point in the previous frame. A patch takes the match of the previous frame's patch at
-/// the end of its centre's motion. `motion` has the resolution of the guides; this function halves `motion` if the
-/// problem has half that resolution (`halved` is not 0).
+/// position of the same surface point in the previous frame. The motion at the centre of a patch leads to a patch of
+/// the previous frame; the match of that patch is taken over. `motion` has the resolution of the guides. If the problem
+/// has half that resolution (`halved` is not 0), this function halves `motion`.
 pub(super) fn moved(before: &Field, motion: &Image, problem: &Problem, halved: usize, job: Job) -> Result<Moved> {
     if halved == 0 {
         return advect(before, motion, problem.patch);
@@ -77,8 +77,8 @@ fn advect(before: &Field, motion: &Image, patch: usize) -> Result<Moved> {
 /// The records of the guides of the previous frame and of this frame.
 pub(super) type GuideRecords<'a> = Option<(&'a GuideRecord, &'a GuideRecord)>;
 
-/// Computes the distances of the advected matches, and returns which target patches keep their match. A patch keeps its
-/// match if all of these conditions hold:
+/// Computes the distances of the advected matches. Returns for each target patch whether it keeps its match, which
+/// requires all of these conditions:
 /// - The error of the match lies left of the knee of the sorted errors.
 /// - The light on the patch has hardly changed since the match was chosen; always true without `guide_records`.
 /// - The patch is not astride a silhouette, and its centre was visible in the previous frame.
@@ -105,8 +105,8 @@ pub(super) fn keep(
     let block = |i: usize| [(i % field.width / BLOCK) as u64, (i / field.width / BLOCK) as u64];
     let stays = |i: usize| Rng::new(seed, &block(i)).next_f32() < params.coherence;
     let is_lit_alike = |i: usize| {
-        // Each block has a limit of its own, 0.5 to 1.5 times `MAX_CHANGE`. Under a slow change of light, the blocks
-        // therefore rematch in different frames.
+        // Each block has a limit of its own, 0.5 to 1.5 times `MAX_CHANGE`. If the light changes slowly, the blocks are
+        // therefore matched anew in different frames.
         let share = 0.5 + Rng::new(2, &block(i)).next_f32();
         guide_records.is_none_or(|(before, now)| now.change(i, before, from[i] as usize) <= share * MAX_CHANGE)
     };

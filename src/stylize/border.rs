@@ -1,15 +1,16 @@
 //! Joins new paint to the painted part of a half-painted picture.
 //!
-//! Patches astride the border of the painted part contain painted pixels, which never change. So the artist's own
-//! paint constrains these patches. Three steps make the new paint continue it:
+//! Patches astride the border of the painted part contain painted pixels, which never change. The artist's paint thus
+//! constrains these patches. Three steps make the new paint continue the artist's paint:
 //!
-//! - Each iteration matches the patches astride the border once more, with guides of a lower weight. Strokes that
-//!   cross the border then find places of the artwork where such strokes continue.
-//! - No exemplar patch is used too often. If the painted part lacks the light of a place, one and the same exemplar
-//!   patch is nearest to all target patches of that place. Without a limit, copies of it would fill the place.
-//! - The matches place paint on the painted pixels too. The difference between the artist's paint and this paint would
-//!   show as a step at the border. After the final vote, this difference fades out from the border into the new paint
-//!   (a membrane, as in Pérez et al. 2003, "Poisson Image Editing").
+//! - Each iteration matches the patches astride the border once more, with guides of a lower weight. Strokes that cross
+//!   the border then find places of the artwork where such strokes continue.
+//! - No exemplar patch is used too often. If no light in the painted part resembles the light of some place to paint, a
+//!   single exemplar patch is nearest to all target patches of that place. Without a limit, copies of this exemplar
+//!   patch would fill the place.
+//! - The matches also determine paint for the painted pixels. The difference between the artist's paint and this paint
+//!   would show as a step at the border. After the final vote, this difference fades out from the border into the new
+//!   paint (a membrane, as in Pérez et al. 2003, "Poisson Image Editing").
 
 use super::level::{Level, Problem};
 use super::params::Params;
@@ -46,8 +47,8 @@ pub(super) struct Border<'a> {
 }
 
 impl<'a> Border<'a> {
-    /// Returns the border of the painted part; `None` if the target has no such part. Patches with `kept` set stay as
-    /// they are.
+    /// Returns the border of the painted part; `None` if the target has no painted part. Patches with `kept` set keep
+    /// their matches.
     pub fn new(problem: &'a Problem, kept: &[bool], params: &Params, seed: u64, job: Job) -> Result<Option<Self>> {
         let (Some(mask), Some(_)) = (&problem.target_mask, &problem.known) else { return Ok(None) };
         let params = Params { guide_weight: params.guide_weight * GUIDES, ..params.clone() };
@@ -60,8 +61,8 @@ impl<'a> Border<'a> {
         Ok(Some(Self { level, is_astride }))
     }
 
-    /// Matches the patches astride the border again, and stores their distances in the units of `level`, which has the
-    /// guides' ordinary weight.
+    /// Matches the patches astride the border again, with guides of a lower weight. Then stores the distances of the
+    /// new matches as `level` measures them, with the guides' ordinary weight.
     pub fn rematch(&mut self, level: &Level, field: &mut Field, picture: &Image, round: u64, job: Job) -> Result<()> {
         let is_astride = |i: usize| self.is_astride[i];
         self.level.set_picture(picture, job)?;
@@ -94,7 +95,7 @@ pub(super) fn limit_usage(level: &Level, field: &mut Field, job: Job) -> Result<
             break;
         }
         free.compact();
-        // The matches remain as hints, without a distance.
+        // Keep the matches above the maximum as starting positions of the search, and discard their distances.
         (0..beyond.len()).filter(|&i| beyond[i]).for_each(|i| field.error[i] = u32::MAX);
         let search = Search { allowed: &free, ..level.forward() };
         let iteration = SearchIteration { index: 5000 + round as u64, radius: 64, initial_samples: 8 };

@@ -1,18 +1,19 @@
-//! Decides whether the normals should guide a run too: they should if the strokes of the exemplar follow its shapes.
+//! Decides whether the normals guide a run in addition to the light. They do if the strokes of the exemplar follow the
+//! shapes of its objects.
 //!
 //! Guides of light determine how dark the paint is, but hardly in which direction its strokes run: places of equal
 //! light can have any slope. The exemplar is divided into blocks, and the direction of the strokes in each block is
 //! measured (structure tensor). For a block with a clear direction, two searches look for blocks elsewhere: one
 //! compares the light alone, the other one light and normals. Strokes follow the shapes if two conditions hold:
 //!
-//! - The blocks found by light and normals have directions similar to the block's own, compared with all blocks of
-//!   other normals. This does not hold for strokes of one direction, and for media without strokes.
-//! - The blocks found by light and normals have directions at least as similar as the blocks found by light alone. This
-//!   does not hold if strokes follow the light.
+//! - The blocks found by light and normals have directions similar to the block's own direction, compared with all
+//!   blocks of other normals. This does not hold for strokes of one direction, and for media without strokes.
+//! - The blocks found by light and normals have directions at least as similar to the block's own direction as the
+//!   blocks found by light alone. This does not hold if strokes follow the light.
 //!
-//! A block counts only if the light alone leads to blocks of other normals; elsewhere the normals change nothing. A
-//! comparison of the two searches alone would not suffice: on a single ball, light and normals determine each other. On
-//! the shapes of the target, they do not.
+//! A block counts only if the search by light alone finds blocks of other normals; for any other block, the normals
+//! change nothing. A comparison of the two searches would not suffice without the first condition: on the single ball
+//! of an exemplar, light and normals determine each other, but on the shapes of the target they do not.
 
 use super::guides::{Guide, MAX_CHANNELS, Range, SIMILAR};
 use super::params::Input;
@@ -24,9 +25,9 @@ use crate::job::Job;
 use glam::Vec3;
 use std::f32::consts::PI;
 
-/// Number of blocks along the longer side of the exemplar, and minimum number of cells along the side of a block. A
-/// cell is at least one pixel wide. Directions are measured on the means of cells, because the texture of paper is
-/// finer than strokes.
+/// `BLOCKS`: number of blocks along the longer side of the exemplar. `CELLS`: minimum number of cells along the side of
+/// a block. A cell is at least one pixel wide. Directions are measured on the means of cells, because the texture of
+/// paper is finer than strokes.
 const BLOCKS: usize = 48;
 const CELLS: usize = 8;
 /// Number of points along the side of a block at which the guides are read.
@@ -34,7 +35,7 @@ const POINTS: usize = 4;
 /// Number of pixels from which the range of a guide is determined.
 const SAMPLES: usize = 4096;
 /// `MAX_BLOCKS`: maximum number of blocks among which a search looks. `MAX_SEARCHES`: maximum number of blocks for
-/// which searches run. Of a longer list, every second block is taken, or every third, and so on.
+/// which searches run. If there are more blocks, only every n-th block is used, with the smallest n that suffices.
 const MAX_BLOCKS: usize = 1024;
 const MAX_SEARCHES: usize = 256;
 /// A block is left out if its light deviates from the block's mean by more than this, as a weighted root mean square of
@@ -64,11 +65,11 @@ pub const NORMALS_WEIGHT: f32 = 1.0;
 /// The directions of the exemplar's strokes, as mean angles in degrees over the blocks that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Directions {
-    /// Between the strokes of a block and those of all blocks elsewhere with other normals.
+    /// Mean angle between the strokes of a block and those of all blocks elsewhere with other normals.
     pub spread: f64,
-    /// Between the strokes of a block and those of the blocks that are found by the light alone.
+    /// Mean angle between the strokes of a block and those of the blocks that are found by the light alone.
     pub by_light: f64,
-    /// Between the strokes of a block and those of the blocks that are found by light and normals.
+    /// Mean angle between the strokes of a block and those of the blocks that are found by light and normals.
     pub by_normals: f64,
     /// Number of blocks that count.
     pub count: usize,
@@ -137,7 +138,7 @@ pub fn directions(input: &Input, normals: &Guide, source_mask: Option<&[bool]>, 
     Ok(Directions { spread: mean(0), by_light: mean(1), by_normals: mean(2), count: angles.len() })
 }
 
-/// Takes every second, third and so on of a list that is longer than `limit`.
+/// Shortens a list of more than `limit` items: keeps every n-th item, with the smallest n that suffices.
 fn every<T>(list: Vec<T>, limit: usize) -> Vec<T> {
     let step = list.len().div_ceil(limit).max(1);
     list.into_iter().step_by(step).collect()
@@ -149,19 +150,20 @@ fn is_inside(mask: &[bool], width: usize, [column, row]: [usize; 2], side: usize
     starts.all(|start| !mask[start..][..side].contains(&false))
 }
 
-/// A guide with the scale on which its values are compared. A sample of its pixels determines the scale.
+/// A guide, with the offset and the factor that map its values to `[0, 1]` for comparisons. Both are determined from a
+/// sample of the guide's pixels.
 struct Scale<'a> {
     guide: &'a Guide<'a>,
     offset: f32,
     factor: f32,
-    /// Weight of the guide, as a share of the total weight of all guides of light.
+    /// Weight of the guide divided by the total weight of all guides of light.
     share: f32,
 }
 
 impl<'a> Scale<'a> {
     fn of(guide: &'a Guide<'a>, share: f32) -> Self {
         let data = &guide.source.data;
-        // An odd step visits all channels and columns if their numbers are powers of two.
+        // Use an odd step: if the numbers of channels and columns are powers of two, it visits all of them.
         let step = (data.len() / SAMPLES) | 1;
         let mut values: Vec<f32> = data.iter().step_by(step).copied().filter(|v| v.is_finite()).collect();
         values.sort_unstable_by(f32::total_cmp);
@@ -203,13 +205,13 @@ struct Block {
     at: [usize; 2],
     /// Direction across the strokes, in radians modulo π.
     angle: f32,
-    /// Mean light and mean normals; each channel is multiplied by the square root of its weight. The weights of all
-    /// channels of light sum to 1, and those of the normals too.
+    /// Means of the guides of light and of the normals over the block; each channel is multiplied by the square root of
+    /// its weight. The weights of all channels of light sum to 1, and so do the weights of the channels of the normals.
     light: Vec<f32>,
     normals: Vec<f32>,
 }
 
-/// Measures the guides of a block; `None` if they are not nearly constant.
+/// Measures the guides of a block; `None` unless the guides are nearly constant within the block.
 fn block(lights: &[Scale], normals: &Scale, at: [usize; 2], side: usize, angle: f32) -> Option<Block> {
     let place = |k: usize, first: usize| first * side + (2 * k + 1) * side / (2 * POINTS);
     let places: Vec<[usize; 2]> =
@@ -236,7 +238,7 @@ fn cells(artwork: &Image, cell: usize, job: Job) -> Result<Image> {
 }
 
 /// Returns the direction across the strokes of a square of `side × side` cells with its corner at `first`, in radians
-/// modulo π; `None` if it has no clear direction.
+/// modulo π; `None` if the strokes have no clear direction.
 fn angle(cells: &Image, first: [usize; 2], side: usize) -> Option<f32> {
     let at = |x: usize, y: usize| cells.data[y.min(cells.height - 1) * cells.width + x.min(cells.width - 1)];
     // Compute the covariance of the gradient about its mean: the mean gradient is that of shading, not of strokes.
@@ -278,7 +280,8 @@ fn compare(blocks: &[Block], own: &Block, weight: f32) -> Option<[f64; 3]> {
     (other_normals > SIMILAR).then(|| [sum / count, light_turn, turn].map(|t| f64::from(t).to_degrees()))
 }
 
-/// The [`FOUND`] nearest blocks so far, in order of distance: for each, the distance and two values to average.
+/// The [`FOUND`] nearest blocks so far, in order of distance: for each block its distance, the angle between the
+/// strokes, and the difference of the normals.
 struct NearestBlocks([(f32, [f32; 2]); FOUND]);
 
 impl NearestBlocks {
@@ -294,7 +297,8 @@ impl NearestBlocks {
         }
     }
 
-    /// Returns the means of the values; `None` if fewer than [`FOUND`] blocks were added.
+    /// Returns the mean angle between the strokes and the mean difference of the normals; `None` if fewer than
+    /// [`FOUND`] blocks were added.
     fn mean(&self) -> Option<[f32; 2]> {
         let mean = |k: usize| self.0.iter().map(|(_, values)| values[k]).sum::<f32>() / FOUND as f32;
         self.0[FOUND - 1].0.is_finite().then(|| [mean(0), mean(1)])

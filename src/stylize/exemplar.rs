@@ -1,8 +1,8 @@
 //! Doubts about the exemplar: places of similar guides that are painted differently.
 //!
-//! The exemplar is divided into blocks. Only blocks in which the guides are nearly constant are examined. A stylisation
-//! cannot distinguish the paint of blocks with equal guides, so it mixes them. Two defects show in the mean paint of
-//! the blocks:
+//! The exemplar is divided into blocks. Only blocks in which the guides are nearly constant are examined. If several
+//! blocks have equal guides, a stylisation cannot distinguish their paint, so it mixes their paint. Two defects show in
+//! the mean paint of the blocks:
 //!
 //! - A blemish, such as a stain: a block is unlike all blocks elsewhere with similar guides.
 //! - Two paints for one light: of the blocks elsewhere with equal guides, a quarter or more differ clearly from the
@@ -40,8 +40,9 @@ const TWO_PAINTS: f32 = 4.0;
 /// Defects of the exemplar, with their places in pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Doubts {
-    /// Largest difference of a block from the blocks elsewhere with similar guides (the 5 % quantile over these
-    /// blocks), in grains; and the centre of this block in pixels.
+    /// The largest difference between a block and the blocks elsewhere with similar guides, in grains; and the centre
+    /// of this block in pixels. The difference of a block is the 5 % quantile over the blocks with which it is
+    /// compared.
     pub blemish: f64,
     pub blemish_at: Option<[usize; 2]>,
     /// Share of the blocks whose light has two paints, among the blocks with at least `MIN_OTHERS` blocks of equal
@@ -71,7 +72,8 @@ struct Compared {
     /// the differences of their paint from this median paint. `None` if there are too few of these blocks.
     spread: Option<[f32; 2]>,
     /// 5 % quantile of the differences between the block's paint and the paint of the blocks elsewhere with similar
-    /// guides. It is large only if hardly any of these blocks has similar paint. 0 if there are too few of them.
+    /// guides. It is large only if hardly any of the compared blocks has similar paint. 0 if there are too few blocks
+    /// to compare.
     own: f32,
 }
 

@@ -52,7 +52,7 @@ impl GuideRecord {
         Ok(Self { size, patches, light, weights: lights.iter().map(weight).collect(), data, normals_weight })
     }
 
-    /// Whether this is the record of a frame, not the default.
+    /// Whether this is the record of a frame; false for the default record.
     pub(super) fn is_of_frame(&self) -> bool {
         self.size != [0, 0]
     }
@@ -63,8 +63,8 @@ impl GuideRecord {
             == (other.size, other.patches, other.weights.len(), other.data.len())
     }
 
-    /// Returns the weighted root mean square difference between the light on a patch and the light on a patch of
-    /// another record.
+    /// Returns the weighted root mean square difference between the light on a patch of this record and the light on
+    /// the patch `other_patch` of the record `other`.
     pub(super) fn change(&self, patch: usize, other: &Self, other_patch: usize) -> f32 {
         let n = self.weights.len();
         let light = self.light[patch * n..(patch + 1) * n].iter();
@@ -73,15 +73,15 @@ impl GuideRecord {
         terms.sum::<f32>().sqrt()
     }
 
-    /// Replaces the light on a patch by the light on a patch of another record.
+    /// Replaces the light on a patch of this record by the light on the patch `other_patch` of the record `other`.
     pub(super) fn recall(&mut self, patch: usize, other: &Self, other_patch: usize) {
         let n = self.weights.len();
         self.light[patch * n..(patch + 1) * n].copy_from_slice(&other.light[other_patch * n..(other_patch + 1) * n]);
     }
 
-    /// Follows the motion of each pixel into the previous frame, and compares the data of the pixel with the data
-    /// there. All pixels within one pixel of the end of the motion are tried; the smallest difference is the error of
-    /// the pixel. Compares nothing if there are no guides of data, or if `motion` has another size.
+    /// Follows the motion of each pixel into the previous frame. Compares the guides of data at the pixel with those
+    /// within one pixel of the end of the motion; the smallest difference is the error of the pixel. Compares nothing
+    /// if there are no guides of data, or if `motion` has another size than the target.
     pub(super) fn agreement(&self, before: &Self, motion: &Image, job: Job) -> Result<Comparison> {
         let [width, height] = self.size;
         let channels = self.data.len().checked_div(width * height).unwrap_or(0);
@@ -112,8 +112,8 @@ fn difference(a: &[u8], b: &[u8]) -> f32 {
     f32::from(a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0)) / STEPS
 }
 
-/// Writes the means of the chosen channels over the patches of row `y`: sums along the columns of pixels first, because
-/// neighbouring patches share them.
+/// Writes the means of the chosen channels over the patches of row `y`. Sums each column of pixels first, because
+/// neighbouring patches share these sums.
 fn means(row: &mut [u8], target: &Image, channels: &[usize], y: usize, patch: usize) {
     let n = channels.len();
     let scale = 1.0 / (patch * patch) as f32;
@@ -125,7 +125,8 @@ fn means(row: &mut [u8], target: &Image, channels: &[usize], y: usize, patch: us
         }
         sums
     };
-    // A ring of the column sums of the current patch; the patch at `x` replaces that of column `x - 1`.
+    // A ring buffer of the column sums of the current patch. For the patch at `x`, the sum of the patch's last column
+    // replaces the sum of column `x - 1`, which the patch no longer contains.
     let mut columns = [[0.0f32; MAX_CHANNELS]; MAX_PATCH];
     (0..patch - 1).for_each(|x| columns[x] = column(x));
     for (x, out) in row.chunks_exact_mut(n).enumerate() {

@@ -35,8 +35,8 @@ pub struct Guide<'a> {
 /// Maximum number of channels of all guides together. With the up to four channels of an artwork, they fill the 64
 /// channels of an image.
 pub const MAX_CHANNELS: usize = 60;
-/// A channel is flat if its values span at most this range: its contrast is left unchanged, because the ratio of two small
-/// ranges is mostly noise. [convention: about 5 of 255 levels]
+/// A channel is flat if its values span at most this range. The contrast of a flat channel is left unchanged, because
+/// the ratio of two small ranges is mostly noise. [convention: about 5 of 255 levels]
 const FLAT_RANGE: f32 = 0.02;
 
 /// Largest side of a patch of guides in pixels: the largest value of `Params::patch`.
@@ -46,7 +46,7 @@ pub(super) const MAX_PATCH: usize = 33;
 /// [bench stylit:autocomplete]
 pub(super) const SIMILAR: f32 = 0.1;
 
-/// All guides, with their channels interleaved in one image per side.
+/// All guides, with their channels interleaved in two images: one of the exemplar, one of the target.
 pub(super) struct Channels {
     pub source: Image,
     pub target: Image,
@@ -172,7 +172,7 @@ impl Normalisation {
 }
 
 impl Guide<'_> {
-    /// Returns the name of one side of the guide, for error messages.
+    /// Returns the name of a part of the guide (`side`: its source, target or weight) for error messages.
     pub(super) fn side(&self, side: &str) -> String {
         format!("the {side} of guide {:?}", self.name)
     }

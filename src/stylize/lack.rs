@@ -1,9 +1,9 @@
 //! Light of the target that the exemplar lacks.
 //!
 //! The exemplar lacks the light of a place of the target if no place of the exemplar has similar values of the guides
-//! of light. The paint of such a place is a guess. The guide error of a run is high there, but it is also high where a
-//! match was chosen for its colours. Therefore places with a high guide error are compared with a sample of the whole
-//! exemplar.
+//! of light. The paint of such a place is a guess. The guide error of a run is high at such a place, but it is also
+//! high where a match was chosen for its colours. Therefore places with a high guide error are compared with a sample
+//! of the whole exemplar.
 
 use super::guides::{Channels, SIMILAR};
 use crate::error::Result;
@@ -25,7 +25,7 @@ const BLOCK: usize = 8;
 /// The part of the target whose light the exemplar lacks.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lack {
-    /// The share of the pixels to paint whose light the exemplar lacks.
+    /// Number of pixels whose light the exemplar lacks, divided by the number of pixels to paint.
     pub share: f64,
     /// Centre, in pixels of the target, of the block with the most samples whose light the exemplar lacks; `None` if
     /// `share` is 0.
@@ -57,8 +57,8 @@ impl LightSamples {
     }
 }
 
-/// Compares the target with the exemplar. `target_mask` marks the pixels to paint; all if it is `None`. `guide_error`
-/// is the guide error of the finished run.
+/// Compares the target with the exemplar. `target_mask` marks the pixels to paint; `None` marks all pixels.
+/// `guide_error` is the guide error of the finished run.
 pub(super) fn lack(
     light: Option<&LightSamples>,
     target_mask: Option<&[bool]>,
@@ -100,7 +100,8 @@ fn stride(image: &Image) -> usize {
 
 /// The distinct values of the exemplar's guides of light, rounded.
 struct Codes {
-    /// The channels of all codes, one code after the other, and the weights of the channels: 0 for channels of data.
+    /// `values` holds the distinct values one after the other, each with all channels of the guides. `weights` holds
+    /// the weight of each channel, 0 for channels of data.
     values: Vec<f32>,
     weights: Vec<f64>,
 }

@@ -28,7 +28,8 @@ pub(super) struct Problem {
     pub known: Option<Image>,
     /// Number of non-finite pixels in the exemplar (`.0`) and in the target (`.1`).
     pub broken: (usize, usize),
-    /// The target's guides for the next frame of a sequence. A run takes them; `None` afterwards, and on coarse levels.
+    /// The target's guides for the next frame of a sequence. A run moves the record out of the problem, which leaves
+    /// `None`. Coarse levels have none.
     pub guide_record: Option<GuideRecord>,
     /// Samples of the guides of light; `None` on coarse levels, and if no guide of light has a weight above 0.
     pub light: Option<LightSamples>,
@@ -161,8 +162,8 @@ fn check_motion(input: &Input, target: &Image) -> Result<()> {
 }
 
 /// Halves the mask of usable exemplar pixels; `of` gives the size of the mask. A coarse pixel is usable if all fine
-/// pixels under it are usable. If this leaves no usable pixel in the whole mask, one usable fine pixel suffices
-/// everywhere, so that a mask of thin regions alone does not become empty.
+/// pixels under it are usable. If no coarse pixel of the whole mask is usable by this rule, each coarse pixel with at
+/// least one usable fine pixel is usable instead. A mask of thin regions alone then does not become empty.
 fn halve_source_mask(mask: Option<&[bool]>, of: &Image) -> Result<Option<Vec<bool>>> {
     let Some(mask) = mask else { return Ok(None) };
     let inside = halve_mask(mask, of.width, of.height, false)?;

@@ -41,8 +41,8 @@ struct State {
     picture: Image,
     /// For each target patch, whether it keeps its match of the previous frame; empty without motion.
     kept: Vec<bool>,
-    /// Record of this frame's guides, by which the next frame decides which matches it keeps. For a kept match, it
-    /// holds the light of the frame that chose the match.
+    /// Record of this frame's guides, by which the next frame decides which matches it keeps. For a kept match, the
+    /// record holds the light of the frame in which the match was chosen.
     guide_record: Option<GuideRecord>,
 }
 
@@ -61,7 +61,8 @@ pub(super) fn run(
         _ => None,
     };
     // A run that continues the matches of a previous result needs only the finest level. A frame of a sequence needs
-    // all levels: on the finest level alone, uncovered places and changed light would get the paint around them.
+    // all levels. With the finest level alone, places that were hidden in the previous frame, and places whose light
+    // has changed, would be filled with the paint around them.
     let continues = input.previous.is_some() && moved.is_none();
     // Build the pyramid. Each level below full resolution is at least five patches wide along its shortest side.
     let levels = if continues { 1 } else { level_count(problem.shortest_side(), 5 * problem.patch, params.levels) };
@@ -201,9 +202,9 @@ fn rematch(
     job: Job,
 ) -> Result<Option<Vec<PassReport>>> {
     let State { field, picture, kept, .. } = state;
-    // The distance of a match changes only if the target patch contains a changed pixel, so rematch only these patches.
-    // Two iterations rematch all patches. In the first iteration, no distances are valid yet. In the first iteration of
-    // `Params::polish`, the patches are still assigned under the budget, not to their nearest exemplar patches.
+    // The distance of a match changes only if the target patch contains a changed pixel, so rematch only such patches.
+    // Two iterations rematch all patches: the first one, because no distances are valid yet, and the first iteration of
+    // `Params::polish`, because the matches were assigned under the budget instead of to the nearest exemplar patches.
     let polishes = l == 0 && k >= params.finest_iterations;
     let rematches_all = k == 0 || l == 0 && k == params.finest_iterations;
     let mut changed = if rematches_all {

@@ -21,8 +21,8 @@ pub struct Input<'a> {
     pub artwork: &'a Image,
     /// The guides, each a pair of images: one aligned with the artwork (A), one with the target (B). At least one.
     pub guides: &'a [Guide<'a>],
-    /// Normals, as a guide that the exemplar switches on: they are used, with the weight of this guide, if the strokes
-    /// of the artwork follow the shapes ([`Directions::follow_shapes`](super::Directions::follow_shapes)). In a
+    /// Normals as a guide that is used only if the strokes of the artwork follow the shapes
+    /// ([`Directions::follow_shapes`](super::Directions::follow_shapes)); they then have the weight of this guide. In a
     /// sequence, the first frame decides: see `guide_record`.
     pub normals: Option<Guide<'a>>,
     /// Mask of the artwork, one channel: patches are taken only from pixels above 0.5. If absent, from all pixels.
@@ -36,8 +36,9 @@ pub struct Input<'a> {
     /// The field of an earlier result for a target of the same size, as initial matches.
     pub previous: Option<&'a Field>,
     /// Displacement in pixels from each target pixel to the position of the same surface point in the frame of
-    /// `previous`: two channels, NaN where the point was not visible. Each target patch takes over the match of the
-    /// patch from which its centre has moved; the share `Params::coherence` of these matches is kept.
+    /// `previous`: two channels, NaN where the point was not visible. The motion at the centre of a target patch leads
+    /// to a patch of the previous frame, whose match the target patch takes over. The share `Params::coherence` of
+    /// these matches is kept.
     pub motion: Option<&'a Image>,
     /// The record of the guides of the frame of `previous`. With it, paint follows changes of light, and the report
     /// says how the motion agrees with the guides.

@@ -9,8 +9,9 @@ use crate::image::Image;
 use crate::job::Job;
 use std::time::Duration;
 
-/// Maximum number of pixels in a pilot run, counted in the smaller of exemplar and target. If the larger one counted,
-/// a small exemplar could be reduced to so few patches that the energies would predict the final energy poorly.
+/// Maximum number of pixels in a pilot run, counted in the smaller of exemplar and target. If the larger of the two
+/// were counted, a small exemplar could be reduced to so few patches that the energies would predict the final energy
+/// poorly.
 const MAX_PIXELS: usize = 128 << 10;
 /// Number of resolutions of the pilot runs.
 const RESOLUTIONS: usize = 3;
@@ -108,7 +109,7 @@ impl<'a> PilotRuns<'a> {
         Ok(Prediction { seconds: (self.clock)().saturating_sub(start).as_secs_f64(), energy })
     }
 
-    /// Runs settings at the highest pilot resolution too, unless that was done before.
+    /// Runs the settings with the index `settings` at the highest pilot resolution, unless this was done before.
     ///
     /// # Errors
     /// Those of [`super::run`].
@@ -119,12 +120,12 @@ impl<'a> PilotRuns<'a> {
         Ok(())
     }
 
-    /// Whether settings have been run at the highest pilot resolution.
+    /// Whether the settings with the index `settings` have been run at the highest pilot resolution.
     pub fn is_refined(&self, settings: usize) -> bool {
         self.near[settings].is_some()
     }
 
-    /// Predicts time and energy of settings at the full resolution.
+    /// Predicts time and energy at full resolution of the settings with the index `settings`.
     ///
     /// - Time grows linearly with the number of pixels, or by a slightly higher power if the settings converge slowly.
     ///   The power is estimated from the two higher pilot resolutions.
@@ -136,8 +137,8 @@ impl<'a> PilotRuns<'a> {
         let [all, tried, middle] =
             [0, self.tried()[0], self.tried()[1]].map(|at| pixels(&self.problems[at].guides.target) as f64);
         let ratio = |value: f64, usual: f64| if usual > 0.0 { value / usual } else { 1.0 };
-        // If the settings ran at the middle resolution only, compute their time and energy there relative to the
-        // reference settings, and assume the same ratios at the highest pilot resolution.
+        // If the settings ran only at the middle resolution, compute their time and energy at this resolution relative
+        // to the reference settings. Assume the same ratios at the highest pilot resolution.
         let usual = self.near[self.usual].unwrap_or_default();
         let [here, its_usual] = [settings, self.usual].map(|i| self.middle[i]);
         let near = self.near[settings].unwrap_or(Prediction {

@@ -49,7 +49,8 @@ pub struct Report {
     /// Fig. 17), and 0 where a pixel has no match.
     pub guide_error: Image,
     /// Two channels: for each target pixel, the position in the artwork from which its paint comes, x and y in pixels.
-    /// The patch with the nearest centre determines it; -1 if that patch has no match.
+    /// Of the patches that cover the pixel, the one with the nearest centre determines the position. Both values are -1
+    /// if that patch has no match.
     pub sources: Image,
     /// Number of halvings from the target's size to the result's: 1 in preview, else 0.
     pub halvings: usize,
@@ -108,7 +109,7 @@ fn source_of(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize, 
     (at != NONE).then_some((px + x - fx, py + y - fy))
 }
 
-/// Computes the guide error of each target pixel: see [`Report::guide_error`].
+/// Computes the guide error of each target pixel, as defined at [`Report::guide_error`].
 pub(super) fn guide_error(field: &Field, problem: &Problem, job: Job) -> Result<Image> {
     let (source, target) = (&problem.guides.source, &problem.guides.target);
     let mut out = Image::new(target.width, target.height, 1)?;

@@ -12,10 +12,11 @@
 //! nearest exemplar patch instead.
 //!
 //! The resulting field is varied but fragmented: neighbouring positions are painted from patches that were not
-//! neighbours in the artwork. Therefore a target patch may finally continue a neighbour's match (`Params::settle`,
-//! `Params::seam`; not in the paper). It does so if the continued match is closer than its own, or if avoiding the
-//! seam outweighs the greater distance. This step searches for no new matches, so the result uses as much of the
-//! exemplar as before, but in larger pieces (docs/notes/stylize.md has its effect on the energy).
+//! neighbours in the artwork. Therefore a target patch may finally continue the match of a neighbouring target patch
+//! (`Params::settle`, `Params::seam`; not in the paper). It does so if the continued match is closer than the patch's
+//! own match, or if avoiding the seam outweighs the greater distance. This step searches for no new matches, so the
+//! result uses as much of the exemplar as before, but in larger pieces (docs/notes/stylize.md has its effect on the
+//! energy).
 //!
 //! Each pass starts from the matches of the previous pass. An exemplar patch whose target has been taken searches anew
 //! around that target; all other exemplar patches keep their matches.

@@ -98,7 +98,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
 #[test]
 fn rough_paint_stays_whole_and_smooth_paint_is_blended() {
     let (a, b) = (scene(90, 70, 40.0, 30.0, 22.0), scene(101, 83, 60.0, 45.0, 30.0));
-    // The light as paint without grain, with a slow change of colour from left to right.
+    // An artwork without grain: it shows the light, with a slow change of colour from left to right.
     let smooth = Image::from_fn(90, 70, |x, y| {
         let light = a.pixel(x, y)[0];
         [0.6 * light, 0.2 + 0.5 * light, 0.3 + 0.3 * x as f32 / 90.0]
@@ -131,7 +131,8 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
     assert!(nearest.report.levels.iter().flat_map(|l| &l.passes).all(|passes| passes.is_empty()));
     let (rich, poor) = (budget.report.usage, nearest.report.usage);
     assert!(rich.used > 1.1 * poor.used && rich.entropy > poor.entropy, "{rich:?} {poor:?}");
-    // Returns the mean squared difference of horizontal neighbours in the first channel, up to a constant factor.
+    // Returns the mean squared difference between horizontally neighbouring pixels in the first channel, up to a
+    // constant factor.
     let power = |image: &Image| {
         let differences = image.data.chunks_exact(3 * image.width).flat_map(|row| {
             row.chunks_exact(3).zip(row[3..].chunks_exact(3)).map(|(p, q)| f64::from(p[0] - q[0]).powi(2))
@@ -142,8 +143,9 @@ fn the_budget_uses_more_of_the_exemplar_and_keeps_more_texture_than_nearest_patc
     assert!(kept > 1.1 * washed, "{kept} {washed}");
 }
 
-/// Fig. 7 of StyLit: the target's highlight is four times as large as the exemplar's. If all exemplar patches were
-/// used equally often, a part of it would be filled with other paint; the budget reuses the exemplar's highlight.
+/// Fig. 7 of StyLit: the target's highlight is four times as large as the exemplar's. If all exemplar patches were used
+/// equally often, a part of the target's highlight would be filled with other paint. The budget lets the patches of the
+/// exemplar's highlight be used again.
 #[test]
 fn a_highlight_larger_than_the_exemplars_is_filled_with_highlight() {
     let half = |share: f32| Image::from_fn(60, 60, |x, _| [if (x as f32) < 60.0 * share { 0.9 } else { 0.1 }]).unwrap();

@@ -1,7 +1,6 @@
-//! Shading study (StyLit, §4.2): while the artist continues painting, the result is updated. The parts of the result
-//! that show changed parts of the artwork are synthesised again, starting from the last field. The time for
-//! matching and painting is proportional to the affected area. The guides and the artwork are quantised anew as a
-//! whole.
+//! Shading study (StyLit, §4.2): updates the result while the artist continues painting. Where the result shows changed
+//! parts of the artwork, it is synthesised again, starting from the last field. The time for matching and painting is
+//! proportional to the affected area. The guides and the artwork are quantised anew as a whole.
 
 use super::border;
 use super::level::{Level, Problem, encode, encoded};

@@ -37,7 +37,8 @@ pub const MAX_BLEMISH: f64 = 13.0;
 
 impl Report {
     /// Returns warnings about defects of the exemplar, and about light of the target that the exemplar lacks. In a
-    /// half-painted picture, the exemplar is the painted part. Places are in pixels of the full size, in previews too.
+    /// half-painted picture, the exemplar is the painted part. Positions are in pixels of the full size, even for a
+    /// preview.
     pub fn warnings(&self, is_half_painted: bool) -> Vec<Warning> {
         let light = light_not_painted(&self.lack, is_half_painted);
         let all = light.into_iter().chain(ambiguous_paint(&self.doubts)).chain(blemish(&self.doubts));

@@ -9,8 +9,8 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pattern {
     pub scale: Scale,
-    /// Metres per texel, in `[0, 1e6]`. 0 means the size of an unwarped pixel; the texels are larger if there would be
-    /// more than `max_texels` along a side.
+    /// Metres per texel, in `[0, 1e6]`. 0 means the size of an unwarped pixel or, if the texture would then have more
+    /// than `max_texels` along a side, the smallest size that keeps to this limit.
     pub texel_size: f64,
     /// Rotation of the pattern from the surface's u axis towards v, in radians, in `[-2π, 2π]`.
     pub rotation: f64,

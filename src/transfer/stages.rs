@@ -120,8 +120,8 @@ impl Transfer {
     }
 
     /// If lamps lie beyond the plane of the room's layout, and a larger room that contains them is plausible, enlarges
-    /// the room. Then finds the plane and the lights again in the larger room. Returns whether the room may have to be
-    /// enlarged once more: only if the plane is a proposal without any stroke, and the room was enlarged.
+    /// the room. Then finds the plane and the lights again in the larger room. Returns true if the room may have to be
+    /// enlarged once more: the room was enlarged, and its plane is a proposal without any plane stroke.
     fn enlarge_room(&mut self, job: Job) -> Result<bool> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), lights: Some(lights), .. } =
             &self.results
@@ -253,8 +253,8 @@ impl Transfer {
         let params = relight::Params { constraint: target.constraint, ..self.params.relight.clone() };
         let solution = relight::run(&input, &params, job.part(0.1, 1.0))?;
 
-        // The solution scales the strength with which the stage Emission placed the texture. At that time the white may
-        // have been another one.
+        // The solution is a factor of the strength with which the stage Emission placed the texture. Take this strength
+        // from the scene, because `white_luminance` may have changed since.
         let placed = unsolved.scene.materials[unsolved.placed.material].emission;
         let mut lit = unsolved.with_strength(placed * solution.scale.as_vec3());
         if lit.scene.cameras.is_empty() {

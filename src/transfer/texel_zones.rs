@@ -1,5 +1,5 @@
-//! Finds the parts of the surface's bounding rectangle where lamps may lie. The emission knows no surfaces, and the scene
-//! no lamps; the transfer knows both.
+//! Finds the parts of the surface's bounding rectangle where lamps may lie. The emission does not know surfaces, and
+//! the scene does not know lamps; only the transfer knows both.
 
 use crate::emission::TexelZone;
 use crate::error::Result;

@@ -182,7 +182,8 @@ class DistributionFormat(IntEnum):
     LDT = 1
     """EULUMDAT (.ldt)."""
     TM33 = 2
-    """ANSI/IES TM-33-18 and TM-33-23 (.xml). Several emitters are added up. TM-33-23 is written."""
+    """ANSI/IES TM-33-18 and TM-33-23 (.xml). The distributions of all emitters are added up. Saved files are
+    TM-33-23."""
     GLDF = 3
     """GLDF container (.gldf): a product with variants, of which one is read."""
     ANY = 4
@@ -451,12 +452,12 @@ class Constraint(IntEnum):
     """Whether light should equal its target value, or stay above or below it."""
 
     EQUAL = 0
-    """The light should equal the value."""
+    """The light should equal its target value."""
     AT_LEAST = 1
-    """The light should be at least the value, for example because a standard requires it on a desk, or because
-    the photo clips this channel."""
+    """The light should be at least its target value, for example because a standard requires it on a desk, or
+    because the photo clips this channel."""
     AT_MOST = 2
-    """The light should be at most the value, for example to limit glare."""
+    """The light should be at most its target value, for example to limit glare."""
 
 
 class Quantity(IntEnum):
@@ -664,9 +665,10 @@ class WarningCode(IntEnum):
     probability that a pixel painted as light is brighter than a pixel painted as plane; it is below the limit.
     The warning points to the darkest lamp."""
     NO_PATTERN = 23
-    """A texture without any light would differ less from the photo than the synthesised texture does. The
-    severity is the error of this texture; EmissionReport.error is smaller if EmissionLaw.BEST has then kept the
-    texture of another law. This warning replaces WarningCode.PATTERN_UNCERTAIN."""
+    """A texture without any light would differ less from the photo than the texture that was synthesised first.
+    The severity is the error of that first texture. If EmissionLaw.BEST has then found a better texture by
+    another law, EmissionReport.error is smaller than the severity. This warning replaces
+    WarningCode.PATTERN_UNCERTAIN."""
     PROPOSED = 24
     """A mask is only a proposal, because strokes are missing: for the plane, positive or negative strokes, or
     both; for the lights, positive strokes. The severity is the expected share of wrong pixels."""
@@ -687,9 +689,10 @@ class WarningCode(IntEnum):
     """The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame
     shows another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is
     compared with the exact motion of their scenes. Otherwise the GuideRange.DATA guides, such as object codes
-    or normals, are compared along the motion; without such guides, and in a preview, this second comparison is
-    left out, and the warning does not occur. The severity is the share of pixels with wrong motion among the
-    pixels that were compared. The warning points to the pixel with the largest error."""
+    or normals, of the pixel and of the end of its motion are compared. Previews, and stylisations without such
+    guides, skip this comparison of guides. If nothing was compared, the warning does not occur. The severity is
+    the share of pixels with wrong motion among the pixels that were compared. The warning points to the pixel
+    with the largest error."""
     LIGHT_NOT_PAINTED = 29
     """The target of a stylisation shows light that no usable place of the exemplar shows, for example a cast
     shadow if the painted part of a half-painted picture has no shadow. The new paint there is a guess. The
@@ -722,14 +725,17 @@ class Group(IntEnum):
     EACH = 1
     """Each lamp is a group of its own."""
     BY_X = 2
-    """Lamps in one row form a group: the x coordinates of their centres agree within row_tolerance. If the
-    emission has a texture, the texture coordinate u takes the place of x."""
+    """Each row of lamps is a group. The lamps are sorted by the x coordinates of their centres; a new row
+    begins where two successive lamps differ by more than row_tolerance. If the emission has a texture, the
+    texture coordinate u replaces x."""
     BY_Y = 3
-    """Lamps in one row form a group: the y coordinates of their centres agree within row_tolerance. If the
-    emission has a texture, the texture coordinate v takes the place of y."""
+    """Each row of lamps is a group. The lamps are sorted by the y coordinates of their centres; a new row
+    begins where two successive lamps differ by more than row_tolerance. If the emission has a texture, the
+    texture coordinate v replaces y."""
     BY_Z = 4
-    """Lamps in one row form a group: the z coordinates of their centres agree within row_tolerance. If the
-    emission has a texture, all lamps form one group."""
+    """Each row of lamps is a group. The lamps are sorted by the z coordinates of their centres; a new row
+    begins where two successive lamps differ by more than row_tolerance. If the emission has a texture, all
+    lamps form one group."""
     BY_TYPE = 5
     """Lamps of about equal area form a group: in the order of their areas, a new group begins where the area
     grows by more than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot,
@@ -774,11 +780,11 @@ class Known(IntEnum):
     """No length is known. The points where suspensions meet the ceiling then determine the size, together with
     the height of the ceiling. Without such points, each lamp has Doubt.SIZE."""
     DROP = 1
-    """The distance of the first lamp's top below the ceiling."""
+    """The distance of the first lamp's top below the ceiling; with alike = 0, of every lamp's top."""
     DIAMETER = 2
-    """The largest diameter of a lamp."""
+    """The largest diameter of the body, which is then the same for all lamps, also with alike = 0."""
     SPACING = 3
-    """The horizontal distance between the axes of the first two lamps."""
+    """The horizontal distance between the axes of the first two lamps; with alike = 0 it determines no size."""
 
 
 class Body(IntEnum):
@@ -1662,10 +1668,10 @@ class RectifyReport:
     distortion_error: float
     """Standard deviation of the field distortion; NaN if distortion is NaN."""
     squareness: tuple[float, float, float]
-    """For each axis, the angle between the two other axes minus 90 degrees, in radians. For this field, each of
-    the two axes is estimated only from the lines that run along it. The value differs from 0 if walls are
-    oblique, pixels are not square or the principal point is wrong. NaN if one of the two axes has no lines. The
-    vectors of the field axes are always orthogonal."""
+    """For each axis, the angle between the two other axes minus 90 degrees, in radians. For this angle, each of
+    the two axes is estimated only from the lines that run along that axis; the vectors of the field axes, in
+    contrast, are always orthogonal. The value differs from 0 if walls are oblique, pixels are not square or the
+    principal point is wrong. NaN if one of the two axes has no lines."""
     squareness_errors: tuple[float, float, float]
     """Standard deviations of the field squareness; NaN where squareness is NaN."""
     undone: float
@@ -1810,10 +1816,11 @@ class EmissionParams(TypedDict, total=False):
     ellipses are drawn with one size and one outline, which stays sharp at any resolution. They lie exactly on
     their lattice. This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives."""
     max_magnification: float
-    """Maximum magnification of the exemplar's pixels, in [1, 1e6]. Pixels with a larger magnification are left
-    out, as if the photo did not show them. 0, the default: all pixels are used. Unwarping magnifies distant
-    parts of the plane: the magnification is the number of unwarped pixels per photo pixel, along one side,
-    divided by its smallest value in the exemplar."""
+    """Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
+    magnifies distant parts of the plane more than near ones. The magnification of a pixel is a length in the
+    unwarped photo divided by the same length in the photo; the relative magnification is this ratio divided by
+    that of the least magnified pixel of the exemplar. Pixels beyond the limit are left out, as if the photo did
+    not show them."""
 
 
 @dataclass(frozen=True)
@@ -1857,8 +1864,9 @@ class EmissionReport:
     lights are whole lamps."""
     margin: float
     """law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is
-    NaN. It is negative if the law was chosen although runner_up scores slightly better: EmissionLaw.BEST
-    prefers the law of EmissionLaw.CORRELATION, and lattices along the axes of the room."""
+    NaN. EmissionLaw.BEST prefers two kinds of laws: the one that EmissionLaw.CORRELATION would choose, and
+    lattices along the axes of the room. If it has kept a preferred law although runner_up scores slightly
+    better, the value is negative."""
 
 
 @dataclass(frozen=True)
@@ -1943,8 +1951,9 @@ class PatternParams(TypedDict, total=False):
     rotation: float
     """Rotation of the pattern from u towards v in radians, in [-2 pi, 2 pi]; default 0."""
     offset: Sequence[float]
-    """Shift of the pattern along its own axes in metres, each in [-1e6, 1e6]; default 0. With EmissionLaw.FREE,
-    the pattern has no fixed place: the conditions of EmissionParams.offset then apply."""
+    """Shift of the pattern in metres, along u and v after their rotation by the field rotation; each in [-1e6,
+    1e6]; default 0. With EmissionLaw.FREE, the shift must be 0, unless EmissionParams.offset allows another
+    value."""
     margin: float
     """Minimum distance in metres of lamps from the edge of the surface and from the zones of
     luxfer_transfer_set_zones, in [-1, 1e6]; lamps that are nearer are left out. With a value below 0, such as
@@ -2149,8 +2158,9 @@ class LampsParams(TypedDict, total=False):
     coordinates by which the lamps are grouped, in metres or as a texture coordinate, >= 0; default 0.01. A
     larger gap starts a new row."""
     free_colour: int
-    """1: solve for a power in each colour channel of a group; all goals must then be given per channel, as by
-    luxfer_lamps_add_mesh. 0, the default: solve for one power of all channels, which keeps the colour."""
+    """1: solve for one power for each colour channel of a group. All goals must then come from
+    luxfer_lamps_add_mesh, because luxfer_lamps_add_grid states no channels. 0, the default: solve for one power
+    for all channels of a group, which keeps the colour."""
     max_scale: float
     """Largest power of a group, that is, the largest factor for its emission, >= 0; default infinity."""
     regularisation: float
@@ -2313,8 +2323,8 @@ class Placement:
     """The best placement, and the light that the target then receives."""
 
     placement: tuple[float, ...]
-    """The placement of the texture on the surface: a 3 x 3 matrix, row by row, as luxfer_importance_respond
-    takes it."""
+    """The placement of the texture on the surface: a 3 x 3 matrix, row by row, like the argument placement of
+    luxfer_importance_respond."""
     offset: tuple[float, float]
     """Offset of the placement along u and v of the texture, in periods."""
     scale: tuple[float, float]
@@ -2520,9 +2530,9 @@ class PendantsParams(TypedDict, total=False):
     """The known length in metres: in [0, 1e4] for Known.DROP, in [1e-4, 1e4] for a diameter or a spacing. Must
     be 0, the default, with Known.NOTHING."""
     ceiling: float
-    """Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If you keep the default
-    because the height is unknown, the unit of all lengths, known_length included, is the true height instead of
-    the metre."""
+    """Height of the ceiling above the camera in metres, in [0.01, 1000]; default 1. If the height is unknown,
+    keep the default: the library then takes and returns all lengths, known_length included, in units of the
+    true height instead of metres."""
     suspension_error: float
     """Standard deviation in pixels of the x and of the y of each point in the array suspensions of
     luxfer_pendants_find, in [0.05, 100]; default 1."""

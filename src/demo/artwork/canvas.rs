@@ -12,7 +12,7 @@ pub struct Canvas {
     pub width: usize,
     pub height: usize,
     colour: Vec<Vec3>,
-    /// Surface texture in `[0, 1]`. Ink ([`Self::spot`]) covers best where this value is high; a dry brush
+    /// Surface texture in `[0, 1]`. Ink ([`Self::spot`]) covers best where the surface texture is high; a dry brush
     /// ([`Self::touch`]) covers best where it is low.
     tooth: Vec<f32>,
     /// Thickness of the paint, in arbitrary units. It is lit as a relief.

@@ -24,9 +24,10 @@ const BRUSHES: [Brush; 3] = [
     Brush { radius: 2.6, length: 30.0, detail: 0.22 },
 ];
 
-/// Returns the colour that the painter mixes for a pixel. Objects have one palette of four paints, table and wall
-/// another, each from dark to light. The light of the scene selects the place in the palette; the colours of the scene
-/// are not used. Red indirect light adds purple on objects, and red on table and wall. A highlight adds white.
+/// Returns the colour that the painter mixes for a pixel. There are two palettes of four paints, each from dark to
+/// light: one for objects, one for table and wall. The light of the scene selects the position in the palette; the
+/// colours of the scene are not used. Red indirect light adds purple on objects, and red on table and wall. A highlight
+/// adds white.
 fn mixed(s: &Appearance) -> Vec3 {
     let ramp = |stops: &[Vec3; 4], t: f32| {
         let t = t.clamp(0.0, 1.0) * 2.999;
@@ -80,8 +81,8 @@ fn layer(canvas: &mut Canvas, subject: &Subject, brush: &Brush, seed: u64) {
     }
 }
 
-/// Returns the local detail. Four places lie two brush radii away along x and y; the detail is the largest difference
-/// of their colours from the colour at `at`, or the edge strength if that is larger.
+/// Returns the local detail. Compares the colours of four points, two brush radii from `at` along x and y, with the
+/// colour at `at`. The detail is the largest difference, or the edge strength if that is larger.
 fn detail(subject: &Subject, at: Vec2, radius: f32) -> f32 {
     let around = [Vec2::X, Vec2::NEG_X, Vec2::Y, Vec2::NEG_Y].map(|d| mixed(subject.at(at + d * 2.0 * radius)));
     let here = mixed(subject.at(at));

@@ -24,8 +24,8 @@ struct Set {
     ink: Vec3,
 }
 
-/// Returns the drawing weight of places darker than `tone`: 0 at this tone, 1 at tones lower by 0.25, negative at
-/// lighter tones. The weight of a highlight is 0.
+/// Returns the drawing weight of a place: 0 if its tone equals `tone`, 1 if its tone is lower by 0.25, and negative if
+/// its tone is lighter. The weight of a highlight is 0.
 fn below(appearance: &Appearance, tone: f32) -> f32 {
     // Leave highlights blank, however dark they are.
     if appearance.shine > 0.6 { 0.0 } else { (tone - appearance.tone) * 4.0 }

@@ -14,8 +14,8 @@ const KERNEL_HALF_WIDTH: f64 = 0.15;
 /// Number of steps into which the distances from 0 to [`MAX_DISTANCE`] are divided.
 const STEPS: usize = 100;
 
-/// Points in a rectangular window from the origin to `size`. All lengths may be in any unit, but two patterns that are
-/// compared must have the same unit.
+/// Points in a rectangle that has one corner at the origin and the opposite corner at `size`. Lengths may be in any
+/// unit, but two patterns that are compared must have the same unit.
 pub struct Points<'a> {
     pub at: &'a [DVec2],
     pub size: DVec2,
@@ -26,10 +26,10 @@ pub struct Points<'a> {
 /// difference is 0 if p = q, and 1 if the patterns have no distance in common. `None` if a pattern has no pair of
 /// points within `MAX_DISTANCE`.
 ///
-/// In a window of w × h, a pair with the offset (x, y) has the weight 1 / ((w - |x|) (h - |y|)). The weight makes up
-/// for the fact that fewer pairs with a large offset fit into the window (translation correction, Ohser 1983). A kernel
+/// In a rectangle of w × h, a pair with the offset (x, y) has the weight 1 / ((w - |x|) (h - |y|)). The weight is
+/// needed because fewer pairs with a large offset fit into the rectangle (translation correction, Ohser 1983). A kernel
 /// spreads each pair over neighbouring distances (Stoyan and Stoyan 1994). `MAX_DISTANCE` and the kernel's width are
-/// multiples of the mean distance between nearest neighbours in the first pattern, `of`.
+/// multiples of the mean distance between nearest neighbours in the pattern `of`.
 pub fn distance(of: &Points, from: &Points) -> Option<f64> {
     let nearest = nearest_distances(of.at);
     let spacing = nearest.iter().sum::<f64>() / nearest.len() as f64;
@@ -90,8 +90,8 @@ mod tests {
         assert!(between(&plain, &grid(DVec2::splat(3.0), 0.0, 1)) < 1e-9);
         assert!(between(&plain, &grid(DVec2::splat(20.0), 4.0, 2)) < 0.15);
         assert!(between(&plain, &scattered) > 0.35);
-        // A part of the grid in a smaller window must agree with the whole grid, because the weights correct for the
-        // window.
+        // A part of the grid in a smaller rectangle must agree with the whole grid, because the weights of the pairs
+        // correct for the size of the rectangle.
         let part: Vec<DVec2> = plain.iter().copied().filter(|p| p.x < 400.0 && p.y < 400.0).collect();
         let part = Points { at: &part, size: DVec2::splat(400.0) };
         assert!(distance(&Points { at: &plain, size }, &part).unwrap() < 0.02);

@@ -13,13 +13,14 @@ use crate::image::{Image, try_collect};
 use crate::job::Job;
 use glam::DVec2;
 
-/// Number of parts of the texture whose statistics are compared with those of the whole texture.
+/// Number of parts of the texture whose statistics are compared with the statistics of the whole texture.
 const PARTS: usize = 6;
 
-/// Returns the sampling error of the statistics as a relative difference. Each of several parts of the texture, as
-/// large as the exemplar, is compared with the whole texture (`whole`) by [`Statistics::difference`]. The result is the
-/// root mean square of these differences. `None` if the texture is smaller than the exemplar, or exceeds it along both
-/// axes by less than half of the exemplar's shorter side: its parts would then hardly differ.
+/// Returns the sampling error of the exemplar's statistics, as a relative difference. The statistics of [`PARTS`] parts
+/// of the texture, each as large as the exemplar, are compared with the statistics `whole` of the whole texture by
+/// [`Statistics::difference`]. The result is the root mean square of these differences. `None` if the texture is
+/// smaller than the exemplar, or if the texture exceeds the exemplar along both axes by less than half of the
+/// exemplar's shorter side: the parts would then hardly differ.
 ///
 /// `scale` is the number of unwarped pixels per texel. `periods` are the periods along x and y in unwarped pixels.
 pub fn error(

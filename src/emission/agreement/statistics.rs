@@ -123,8 +123,9 @@ impl Statistics {
     }
 
     /// The largest difference between two patterns in lit share, lamp area and lamp spacing, relative to `other`. A
-    /// quantity that is 0 in `other` is skipped, as are area and spacing if they are 0 in this pattern. Luminance is
-    /// not compared: a texture holds relative values, and its absolute luminance is solved for later.
+    /// quantity that is 0 in `other` is skipped. Area and spacing are also skipped if they are 0 in this pattern. If
+    /// only this pattern is unlit, its lit share differs by 1. Luminance is not compared: a texture holds relative
+    /// values, and its absolute luminance is solved for later.
     pub fn difference(&self, other: &Self) -> f64 {
         let pairs = [(self.lit, other.lit), (self.area, other.area), (self.spacing, other.spacing)];
         let is_unlit = self.lit == 0.0 && other.lit > 0.0;

@@ -1,8 +1,8 @@
 //! The lamps of an exemplar, as evidence for a law: the rule by which their pattern continues, such as a lattice.
 //!
 //! The border of the photo may cut a lamp, so that only a part is visible. If this part resembles a whole lamp, the cut
-//! lamp is assumed to have that lamp's size. The edges that the border does not cut then give its centre, so the cut
-//! lamp is as good evidence for a period as a whole lamp.
+//! lamp is assumed to have the size of the whole lamp. The centre of the cut lamp then follows from the edges that the
+//! border does not cut. Such a cut lamp is as good evidence for a period as a whole lamp is.
 
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
@@ -16,7 +16,7 @@ const MIN_CUT_SHARE: f64 = 0.1;
 
 /// The lamps of an exemplar. Each list is in descending order of the number of photo pixels that show the lamp.
 pub struct Evidence {
-    /// The lamps that the photo shows completely.
+    /// The whole lamps: those that the photo shows completely, or that count as whole ([`Role::is_whole`]).
     pub whole: Vec<MeasuredLamp>,
     /// The lamps that the border cuts and whose size is known. `centre` is the centre of the whole lamp; `weight` is
     /// the number of photo pixels of the visible part. Always empty for a luminous ceiling, because it is not known at

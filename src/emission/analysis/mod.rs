@@ -3,9 +3,9 @@
 //!
 //! A single analysis is not reliable: unwarping magnifies the blur of distant lamps, which then spoil the
 //! autocorrelation of the near lamps. So several laws are proposed, from the whole exemplar and from its sharper parts,
-//! with strict and with loose thresholds. The score of a law tells how well the law predicts the lamps of the whole
-//! photo ([`sites`]). The law found in the whole exemplar with the threshold `min_regularity` is kept unless another
-//! law scores clearly higher.
+//! with strict and with loose thresholds for the autocorrelation. The score of a law tells how well the law predicts
+//! the lamps of the whole photo ([`sites`]). The law found in the whole exemplar with the threshold `min_regularity` is
+//! kept unless another law scores clearly higher.
 
 mod evidence;
 pub mod sites;
@@ -24,10 +24,12 @@ use sites::Sites;
 /// Lattices and rows are also proposed from the sharper parts of the exemplar, one part for each of these values.
 /// Unwarping magnifies such a part at most this many times as much as the least magnified pixel. [judged on 20 photos]
 const MAGNIFICATIONS: [f64; 2] = [4.0, 2.5];
-/// Limits for shifts that are proposed as periods. `MIN_CORRELATION`: minimum autocorrelation of the lights at the
-/// shift. `MIN_RELATIVE_CORRELATION`: minimum ratio of the autocorrelation at the shift to that of the best shift. The
-/// latter is lowered by its error, as in [`lattice::shifts`]. `MAX_SHIFTS`: maximum number of shifts.
-/// [judged on 20 photos]
+/// Limits for shifts that are proposed as periods. [judged on 20 photos]
+///
+/// - `MIN_CORRELATION`: minimum autocorrelation of the lights at the shift.
+/// - `MIN_RELATIVE_CORRELATION`: minimum ratio of the autocorrelation at the shift to the highest lower bound of the
+///   autocorrelation at any shift ([`lattice::shifts`]).
+/// - `MAX_SHIFTS`: maximum number of shifts.
 const MIN_CORRELATION: f32 = 0.35;
 const MIN_RELATIVE_CORRELATION: f32 = 0.6;
 const MAX_SHIFTS: usize = 6;
@@ -46,7 +48,8 @@ const MIN_LAMP_SHARE: f64 = 0.5;
 /// this share of the longer one. [judged on 20 photos]
 const MAX_PERIOD_DIFFERENCE: f64 = 0.08;
 /// On a luminous ceiling, a law counts only if the correlation of the panes at its periods is at least this share of
-/// the highest one. It equals the share that [`lattice::find_law`] asks for. [bench photos:real]
+/// the highest such correlation of all proposed laws. [`lattice::find_law`] demands the same share of its shifts.
+/// [bench photos:real]
 const MIN_PANE_CORRELATION: f32 = 0.9;
 
 /// The score of the chosen law (lattice, row, repetition or none), and the best alternative.
@@ -165,7 +168,10 @@ impl Analysis {
             && self.max_magnification == params.max_magnification
     }
 
-    /// Compares the law found in the whole exemplar with other proposals, and chooses one.
+    /// Compares the law found in the whole exemplar with other proposals, and chooses one of these laws. An exemplar of
+    /// a single lamp gets a law without a period. Otherwise keeps the law without a comparison if there are fewer than
+    /// two lamps of known size, if lights that run through the photo prevail ([`MIN_LAMP_SHARE`]), or if the law has no
+    /// score.
     fn compare(&mut self, whole: &Correlated, job: Job) -> Result<()> {
         let exemplar = &self.exemplar;
         let evidence = Evidence::of(exemplar);
@@ -231,9 +237,10 @@ impl Analysis {
         Ok(())
     }
 
-    /// Proposes laws. From the whole exemplar, and from each of its sharper parts, come one law with the threshold
-    /// `min_regularity`, and several rows and lattices with looser thresholds. Further lattices and rows along the axes
-    /// come from the distances between lamps; for the panes of a luminous ceiling, also from the autocorrelation.
+    /// Proposes laws; their scores are not set yet. The autocorrelation of the whole exemplar, and of each of its
+    /// sharper parts, gives one law with the threshold `min_regularity`, and several rows and lattices with looser
+    /// thresholds. The distances between lamps give further lattices and rows, along the axes of the unwarped image.
+    /// For the panes of a luminous ceiling, the autocorrelation adds periods along these axes.
     fn propose(&self, evidence: &Evidence, whole: &Correlated, job: Job) -> Result<Vec<Proposal>> {
         let exemplar = &self.exemplar;
         let mut parts = Vec::new();
@@ -304,9 +311,9 @@ impl Analysis {
 }
 
 /// Keeps the proposals at whose periods the lights of a luminous ceiling correlate well ([`MIN_PANE_CORRELATION`]).
-/// Scores compare the centres of panes only; correlations show that panes of two widths take each other's place, or
-/// that a wide bar takes the place of a narrow one. Returns whether `own` may stay: it correlates well, or has no
-/// period.
+/// Scores compare only the centres of panes. A correlation, in contrast, is lowered by a period that moves panes onto
+/// panes of another width, or wide bars onto narrow ones. Returns whether `own` may stay: true if it correlates well or
+/// has no period.
 fn keep_correlated(own: Proposal, proposals: &mut Vec<Proposal>, whole: &Correlated) -> bool {
     let correlation = |p: &Proposal| whole.at_periods(p.law).unwrap_or(0.0);
     let highest = proposals.iter().chain([&own]).map(correlation).fold(0.0, f32::max);

@@ -15,8 +15,8 @@ use crate::emission::lattice::cells;
 use crate::emission::lattice::law::Law;
 use glam::{DMat2, DVec2};
 
-/// Two lamps belong to one site if the vector between them differs from a lattice vector by at most this, as a share
-/// of the shorter period. The lamps' blur is added to the limit. [judged on 20 photos]
+/// Two lamps belong to one site if the vector between them differs from a lattice vector, along x and along y, by at
+/// most this share of the shorter period plus the blur of both lamps. [judged on 20 photos]
 const MAX_OFF_SITE: f64 = 0.12;
 /// A position at which the light mask has no lamp counts as shining if it is bright in the photo. Its contrast with its
 /// surroundings must be at least the share `MIN_SHINING` of the highest contrast among the site's lamps. Only the first
@@ -44,15 +44,16 @@ pub struct Site {
     /// positions between lamps of the site at which a predicted lamp is missing.
     pub holes: f64,
     pub hole_count: usize,
-    /// First and last cell, along both periods, in which the pattern continues; cell 0 holds `at`. If predicted lamps
-    /// are missing beyond the outermost lamp on one side (a wall may be near), the pattern ends there with the
-    /// outermost lamp. If none is missing, the pattern has no known end on this side, and the value is infinite.
+    /// First and last cell, along both periods, in which the pattern continues. Cell (0, 0) holds `at`. If predicted
+    /// lamps are missing beyond the outermost lamp on one side, for example because of a wall, the pattern ends with
+    /// the outermost lamp on this side. If no predicted lamp is missing, the pattern has no known end on this side, and
+    /// the coordinate is infinite.
     pub cells: [DVec2; 2],
 }
 
 impl Site {
-    /// Of the visible positions between the first and the last lamp, the share with a lamp or with light that the mask
-    /// lacks. Positions are weighted by photo pixels: (shown + unmarked) / (shown + unmarked + holes).
+    /// (shown + unmarked) / (shown + unmarked + holes): of the visible positions between the first and the last lamp of
+    /// the site, the share with a lamp or with light that the light mask lacks. Positions are weighted by photo pixels.
     pub fn occupancy(&self) -> f64 {
         let seen = self.shown + self.unmarked;
         seen / (seen + self.holes).max(f64::MIN_POSITIVE)
@@ -64,7 +65,7 @@ impl Site {
     }
 }
 
-/// The sites of a lattice or a row: the places, one per period, at which the same lamps are expected.
+/// The sites of a lattice or a row. The pattern expects a lamp at the position of each site in every cell.
 pub struct Sites {
     pub list: Vec<Site>,
     /// Maps unwarped pixels to lattice cells. A row uses only the first coordinate, along its period.
@@ -236,11 +237,12 @@ impl Sites {
     ///
     /// - P: photo pixels of the lamps that are predicted correctly.
     /// - A: photo pixels of all lamps, and of lamps that a site with at least two lamps predicts but that are missing.
-    /// - s: number of sites; n: number of lamps. No other lamp predicts the first lamp of a site.
+    /// - s: number of sites; n: number of lamps. The first lamp of each site defines the site, so no other lamp
+    ///   predicts it, and only n - s lamps can be predicted.
     ///
-    /// A cut lamp of known size is predicted if whole steps from a site lead to its centre. A cut lamp of unknown size
-    /// is predicted if they lead to any place on its visible part. A cut lamp counts in n only if its size is known and
-    /// it is predicted.
+    /// A cut lamp of known size is predicted if whole steps of the lattice lead from a site to the lamp's centre. A cut
+    /// lamp of unknown size is predicted if whole steps lead from a site to any position on the lamp's visible part. A
+    /// cut lamp counts in n only if its size is known and it is predicted.
     pub fn score(&self, evidence: &Evidence) -> f64 {
         let (predicted, all) = self.list.iter().fold((0.0, 0.0), |(predicted, all), site| match site.lamps.len() > 1 {
             true => (predicted + site.shown, all + site.shown + site.missing),

@@ -36,8 +36,8 @@ pub struct Composition {
 }
 
 impl Composition {
-    /// Plans the texture that [`crate::emission::blend`] makes first, before it may try other laws. Errors: as for
-    /// `blend`.
+    /// Plans the first texture that [`crate::emission::blend`] makes; `blend` may then replace this texture by one with
+    /// another law. Errors: as for `blend`.
     pub fn new(input: &Input, styles: &[Style], params: &Params, job: Job) -> Result<Self> {
         Self::of(None, input, styles, params, job)
     }

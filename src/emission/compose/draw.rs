@@ -10,7 +10,7 @@
 //!    kept if the weights are equal at both centres. The mean light per area follows the weights.
 //!
 //! If many lamps overlap several lamps of earlier exemplars, all lamps in a square of the texture share one number, and
-//! the style changes from square to square. If two kept lamps overlap all the same, only the lamp of the exemplar that
+//! the style changes from square to square. If two kept lamps overlap nevertheless, only the lamp of the exemplar that
 //! comes first in the list stays. Lights that run through their exemplar are not chosen at random: the weight dims them
 //! instead.
 //!

@@ -116,7 +116,7 @@ impl LampList {
         Some(lamp)
     }
 
-    /// The lamp as the texture shows it: shifted, scaled, and clipped to the texture.
+    /// A lamp of exemplar `k` as the texture shows it: shifted, scaled, and clipped to the texture.
     fn placed(&self, composition: &Composition, k: usize, instance: Instance) -> Luminaire {
         let layer: &Layer = &composition.layers[k];
         let shape = &self.shapes[k][instance.component];

@@ -152,9 +152,9 @@ impl Layer {
         Ok(layer)
     }
 
-    /// The statistics that the texture should have, with lengths in unwarped pixels. They are measured in the exemplar,
-    /// but only where its pattern has not ended. If lamps are drawn from designs, the areas of the designs replace the
-    /// measured areas.
+    /// The statistics that the texture should have, with lengths in unwarped pixels. They are measured in the exemplar.
+    /// If the exemplar shows where its pattern ends, the part beyond the end is left out. If lamps are drawn from
+    /// designs, the areas of the designs replace the measured areas.
     pub fn statistics(&self, unwarped: &Image) -> Statistics {
         // If the exemplar repeats as a whole, the exemplar itself is one period. An infinite period stands for this.
         let periods = match self.law {
@@ -222,9 +222,9 @@ fn smaller_photos(input: &Input, exemplar: &Exemplar, scale: f64, job: Job) -> R
     resample::smaller(photo, &to_photo, centres, scale, job)
 }
 
-/// Minimum score of a lattice at which lamps are drawn anew, with clean outlines, in a texture that fits inside the
-/// exemplar. At a lower score, the texture is a copy of a part of the photo, ragged outlines included.
-/// [bench photos:tune]
+/// Minimum score of a lattice ([`Choice`]: how well it predicts the lamps, from 0 to 1) at which lamps are drawn anew,
+/// with clean outlines, in a texture that fits inside the exemplar. At a lower score, the texture is a copy of a part
+/// of the photo, ragged outlines included. [bench photos:tune]
 const MIN_CLEAN_SCORE: f64 = 0.6;
 
 /// A light counts as a line if it is more than this many times as long as wide. [judged on 50 photos]

@@ -6,10 +6,10 @@
 //! If the quadrangle is at least [`MIN_PIXELS`] photo pixels wide, the points are read from a copy of the photo at 1/2,
 //! 1/4, … of its size. In this copy, the quadrangle is 4 to 8 pixels wide.
 //!
-//! The usual method, the elliptical weighted average (Heckbert 1989, 3.5), takes a fifth to a half of the time of this
-//! one, but is less exact. Its Gaussian, at the published width, also covers parts of the photo that belong to other
-//! texels; a narrower Gaussian still does not have the square shape of a texel. The usual method is better only at
-//! extreme magnification, where a row of tens of texels shows the same photo pixel.
+//! The usual method is the elliptical weighted average (Heckbert 1989, 3.5). It takes a fifth to a half of the time of
+//! the method used here, but is less exact. Its Gaussian, at the published width, also covers parts of the photo that
+//! belong to other texels; a narrower Gaussian still does not have the square shape of a texel. The elliptical weighted
+//! average is better only at extreme magnification, where a row of tens of texels shows the same photo pixel.
 //! `cargo bench --bench emission -- recovery` compares both methods with the true image.
 
 use super::cubic;

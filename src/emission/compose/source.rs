@@ -14,8 +14,8 @@ use glam::{DVec2, DVec3, Vec3, Vec4};
 /// `MIN_SAMPLES`, an edge of the light could not be located to within an eighth of the texel's side. [rounding]
 const MIN_SAMPLES: f64 = 4.0;
 const MAX_SAMPLES: f64 = 16.0;
-/// Samples are interpolated if their spacing, in unwarped pixels, is at most this: less than 1 by more than rounding.
-/// [rounding]
+/// Samples are interpolated if their spacing is at most this number of unwarped pixels. The limit is below 1 by more
+/// than rounding errors, so that samples at a spacing of exactly 1 are never interpolated. [rounding]
 const MAX_MAGNIFIED_SPACING: f64 = 0.999;
 
 /// Computes the mean colour of every component of the exemplar.
@@ -43,8 +43,8 @@ pub fn mean_colours(layer: &Layer, input: &Input, job: Job) -> Result<Vec<Vec3>>
 const RIM: f64 = 1.5;
 const MIN_INNER: f64 = 0.5;
 
-/// The colour and coverage that one lamp, or a group of lights, gives to a texel. The colour is already multiplied by
-/// the lit share of the texel.
+/// The contribution of one lamp, or of a group of lights, to a texel. The colour is already multiplied by the lit share
+/// of the texel.
 #[derive(Clone, Copy)]
 pub struct Texel {
     pub colour: Vec3,
@@ -244,7 +244,7 @@ impl TexelSource<'_> {
     }
 
     /// The photo's mean colour over a square of the unwarped image, given by its centre `p` and side, with the clipped
-    /// channels of component `label` replaced. `None` without a photo, and outside it.
+    /// channels of component `label` replaced. `None` without a photo, and if the photo does not show the square.
     fn from_photo(&self, p: DVec2, side: f64, label: u32) -> Option<Vec3> {
         let (photo, to_photo) = self.input.photo?;
         let levels = resample::Levels { photo, smaller: &self.layer.smaller_photos };

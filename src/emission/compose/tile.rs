@@ -20,8 +20,9 @@ impl Tile {
         Self { x, y, width: end(self.x, self.width, width) - x, height: end(self.y, self.height, height) - y }
     }
 
-    /// Cuts this tile out of an image of the larger tile `around`. The result keeps the memory of the image if it fills
-    /// at least half of it: a new image for each tile would cost as much time as a quarter of the rendering.
+    /// Cuts this tile out of an image of the larger tile `around`. If this tile fills at least half of the image, the
+    /// result reuses the memory of the image. To allocate a new image for each tile would cost as much time as a
+    /// quarter of the rendering.
     pub fn cut(self, mut image: Image, around: Self) -> Result<Image> {
         let row = self.width * image.channels;
         let (dx, dy) = (self.x - around.x, self.y - around.y);

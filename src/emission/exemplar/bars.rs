@@ -26,9 +26,9 @@ const SECTIONS: usize = 24;
 /// Maximum number of consecutive sections ([`Section`]) of a bar that a crossing bar may hide. It suffices for a
 /// crossing bar of the maximum width. [convention]
 const MAX_HIDDEN_SECTIONS: usize = 2;
-/// A line that lies alone between two bars is a lead strip inside a pane, and no bar, if two conditions hold: its width
-/// is at most `MAX_STRIP_SHARE` of the distance between the bars, and the strength of both bars ([`BarGroup`]) is at
-/// least `MIN_BAR_STRENGTH` times its own. [bench photos:real]
+/// A dark line that lies alone between two bars is a lead strip inside a pane, and no bar, if two conditions hold. The
+/// width of the line is at most `MAX_STRIP_SHARE` of the distance between the two bars. Each bar has a strength
+/// ([`BarGroup`]) of at least `MIN_BAR_STRENGTH` times the strength of the line. [bench photos:real]
 const MAX_STRIP_SHARE: f64 = 0.03;
 const MIN_BAR_STRENGTH: f64 = 1.5;
 /// Where the photo is sharp, a section ([`Section`]) shows no bar if its depth is below this share of the whole bar's
@@ -243,7 +243,7 @@ impl<'a> Lines<'a> {
         beyond
     }
 
-    /// Divides a bar into sections along its length, and measures each.
+    /// Divides a bar into sections along its length, and measures the depth and the sharpness of each section.
     pub fn sections(&self, bar: &Bar) -> Vec<Section> {
         let middle = (bar.first + bar.last) / 2;
         let starts = (0..self.along).step_by(self.section_length());
@@ -304,7 +304,8 @@ pub fn lowest_sharpness(bar: &Bar, sections: &[Section]) -> f64 {
 /// Writes to `brightest`, for each position of a line of pixels, the maximum of `light` over the `count` positions
 /// before it; 0 for the first position.
 fn brightest_before<'a>(light: impl Iterator<Item = f32>, count: usize, brightest: impl Iterator<Item = &'a mut f32>) {
-    // Keep the positions that may still become the maximum of a window, the brightest first (monotonic queue).
+    // `window` holds the positions that may still be the brightest one before a later position. The brightest comes
+    // first (monotonic queue).
     let mut window: VecDeque<(usize, f32)> = VecDeque::new();
     for (u, (light, brightest)) in light.zip(brightest).enumerate() {
         while window.front().is_some_and(|(first, _)| first + count < u) {

@@ -42,7 +42,7 @@ impl LocalMap {
 
 /// The part of an unwarped image in which unwarping magnifies the photo by at most a given factor. The magnification at
 /// a point is a length in the unwarped image over the same length in the photo. The factor is relative to the
-/// magnification at the least magnified pixel. The distortion of the lens, which hardly changes it, does not count.
+/// magnification at the least magnified pixel. Lens distortion hardly changes the magnification and is ignored.
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     homography: Homography,
@@ -63,7 +63,7 @@ impl MagnificationLimit {
         (max_denominator < high).then_some(Self { homography, max_denominator })
     }
 
-    /// Clears `shown` for the pixels beyond the limit.
+    /// Sets `shown` to false for the pixels that are magnified beyond the limit.
     pub fn restrict(&self, shown: &mut [bool], width: usize) {
         shown.iter_mut().enumerate().for_each(|(i, shown)| *shown &= self.contains(pixel_centre(i, width)));
     }

@@ -1,12 +1,12 @@
 //! Joins the parts of a lamp that the light mask separates: a pipe, a cable or a beam hides a strip of the lamp, or a
 //! narrow bar divides it.
 //!
-//! Two lights side by side may also be two lamps. The other lights decide. The lights are parts of one lamp in two
-//! cases:
+//! Two lights side by side may also be two lamps. The other lights of the photo decide. The two lights count as parts
+//! of one lamp in two cases:
 //!
-//! - A lamp in one piece is as large as both lights together.
-//! - Two lights elsewhere form a pair of the same size, and a narrow bar divides each of the two pairs. No other light
-//!   as large as one part lies alone or in a row of three or more.
+//! - Another lamp, in one piece, is as large as both lights together.
+//! - Two other lights form a pair that is as large as this pair, and a narrow bar divides each of the two pairs.
+//!   Besides, no other lamp that is as large as one of the two lights lies alone or in a row of three or more.
 
 use super::bars::LitPlane;
 use super::components::{self, Component, Components};
@@ -189,7 +189,7 @@ mod tests {
         let pairs = [[20, 10, 30, 60], [52, 10, 30, 60], [120, 40, 30, 60], [152, 41, 31, 60]];
         let light = joined(&pairs).unwrap();
         assert_eq!((light.pixel(51, 30)[0], light.pixel(151, 70)[0]), (1.0, 1.0));
-        // One pair gives no evidence, and a wide gap is no bar.
+        // A single pair is no evidence that its lights are one lamp, and a wide gap is no bar.
         assert!(joined(&pairs[..2]).is_none());
         assert!(joined(&[[20, 10, 30, 60], [58, 10, 30, 60], [110, 40, 30, 60], [148, 40, 30, 60]]).is_none());
     }

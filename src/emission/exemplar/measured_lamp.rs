@@ -10,8 +10,9 @@ use glam::DVec2;
 /// for measurement error and bloom. [judged on 20 photos]
 pub const MAX_SIDE_DIFFERENCE: f64 = 0.2;
 /// Allowances when sides of two lamps are compared, in photo pixels. `NOISE`: measurement error of a side. `BLOOM`:
-/// lengthening of a side by bloom. In unwarped pixels, bloom differs between the lamps if unwarping magnifies them
-/// differently. [judged on 20 photos]
+/// lengthening of a side by bloom. Bloom makes the sides differ in unwarped pixels only if unwarping magnifies the two
+/// lamps differently. So `BLOOM` is multiplied by the difference between the lengths of a photo pixel at the two lamps.
+/// [judged on 20 photos]
 const NOISE: f64 = 0.5;
 const BLOOM: f64 = 10.0;
 /// As [`MAX_SIDE_DIFFERENCE`], but for two panes of a luminous ceiling: windows of two widths may lie side by side.

@@ -93,9 +93,9 @@ impl Exemplar {
         })
     }
 
-    /// The share of an unwarped pixel that light covers, equal to the confidence in `light`. It is 0 for a pixel that
-    /// the photo does not show, for a lit pixel without a component, and for an index beyond the last pixel. Unlit
-    /// pixels keep their confidence, which fades out beside lamps.
+    /// The share of an unwarped pixel that light covers, equal to the confidence in `light`. The share is 0 for a pixel
+    /// that the photo does not show, for a lit pixel that belongs to no component (its light is too small to be a
+    /// lamp), and for an index beyond the last pixel. Unlit pixels keep their confidence, which fades out beside lamps.
     pub fn coverage(&self, light: &Image, pixel: usize) -> f32 {
         let is_light = self.components.labels.get(pixel).is_some_and(|label| *label != 0);
         match self.shown.get(pixel) {
@@ -123,7 +123,7 @@ impl Exemplar {
         [low, lights.iter().fold([0; 2], |high, light| corners(high, light.max, usize::max))]
     }
 
-    /// The lamps that the photo shows completely.
+    /// The whole lamps: those that the photo shows completely, or that count as whole ([`Role::is_whole`]).
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {
         self.components.list.iter().zip(&self.roles).filter(|(_, role)| role.is_whole()).map(|(c, _)| c)
     }
@@ -166,7 +166,8 @@ fn shown_pixels(input: &Input) -> Result<Vec<bool>> {
     ))
 }
 
-/// Finds the connected lights, and the number of photo pixels that show each. Errors: `Degenerate` if there is none.
+/// Finds the connected lights, and the number of photo pixels that show each. With a photo, leaves out lights that are
+/// too small to be lamps ([`MIN_LAMP`]). Errors: `Degenerate` if there is no light.
 fn lights(input: &Input, shown: &[bool]) -> Result<(Components, Vec<f64>)> {
     let Input { unwarped: image, light, photo, .. } = *input;
     let (width, height) = (image.width, image.height);
@@ -196,8 +197,8 @@ fn photo_areas(components: &Components, to_photo: Option<PhotoMap>) -> Vec<f64> 
 
 /// The share of each component's pixels that are darker than half of the component's median luminance.
 fn dark_shares(components: &Components, image: &Image) -> Result<Vec<f64>> {
-    // Sort the luminances of all lit pixels by component. For each component, `ends` is first the start of its part of
-    // `luminances`, and at last the end.
+    // Group the luminances of all lit pixels by component. `luminances` holds one range for each component. `ends`
+    // first holds the start of each range, and then moves on with each added value until it is the end of the range.
     let mut ends = try_vec(components.list.len(), 0usize)?;
     let mut total = 0;
     for (end, component) in ends.iter_mut().zip(&components.list) {

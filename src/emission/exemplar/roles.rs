@@ -11,9 +11,10 @@ const MAX_CUT_RATIO: f64 = 1.35;
 /// cuts exceeds the limit. A disc does not exceed it as long as less than about a hundredth of its area is cut off.
 /// [judged on 5 photos]
 const MAX_WHOLE_CONTACT: f64 = 0.6;
-/// A light runs through the exemplar along x if hardly any visible pixels lie beside it: of the pixels that the photo
-/// shows in the rows of the light, at least this share lies between its first and its last column. Along y accordingly.
-/// Less than 1 is asked for because masks fray at the border of the photo. [convention: 3 pixels in 100]
+/// A light runs through the exemplar along x if hardly any visible pixels lie to its left and right: of the pixels that
+/// the photo shows in the rows of the light, at least this share lies between the first and the last column of the
+/// light. Along y, rows and columns are exchanged. The share is less than 1 because masks fray at the border of the
+/// photo. [convention: 3 pixels in 100]
 const MIN_THROUGH_SPAN: f64 = 0.97;
 
 /// The role of a component of the exemplar.

@@ -71,8 +71,9 @@ impl Working {
         let brightest = lit.map(|i| pixel(i).max_element()).fold(0.0, f32::max);
         let scale = if brightest > 0.0 { 1.0 / brightest } else { 0.0 };
 
-        // The share of a pixel that is usable comes last in `light`, the share that the photo shows comes first in
-        // `seen`. A working pixel is usable if all of its full-size pixels are. If none is usable, work at full size.
+        // The last channel of `light` is the share of a working pixel that is usable. The first channel of `seen` is
+        // the share that the photo shows. A working pixel is usable if all of its full-size pixels are usable. If no
+        // working pixel is usable, work at full size.
         let light = reduced([0.0, 0.3], &|i| match usable[i] {
             true => [light.data[i].clamp(0.0, 1.0), f32::from(is_lit(i)), 1.0],
             false => [0.0; 3],

@@ -23,8 +23,8 @@ const MIN_EXPLAINED: f64 = 0.5;
 pub const MIN_BLOOM_LAMPS: usize = 4;
 const MIN_SIDE: f64 = 0.35;
 
-/// The common side of lamps without bloom, in unwarped pixels. Each item of `sides` holds the measured side of a lamp
-/// and the length of a photo pixel at the lamp, both in unwarped pixels.
+/// Estimates the side that lamps of equal size have without bloom, in unwarped pixels. Each item of `sides` holds the
+/// measured side of a lamp and the length of a photo pixel at the lamp, both in unwarped pixels.
 ///
 /// - If at least [`MIN_BLOOM_LAMPS`] lamps show their bloom ([`BloomFit::shown`]), the bloom is estimated with the wide
 ///   prior [`SHOWN_BLOOM`].

@@ -1,4 +1,5 @@
-//! Computes the share of each texel that light covers. The areas and outlines of lamps are computed from it.
+//! Computes the coverage of each texel: the share of the texel that light covers. The areas and outlines of lamps are
+//! computed from the coverage.
 
 use crate::emission::exemplar::components::Components;
 use crate::error::Result;
@@ -42,9 +43,10 @@ impl<'a> LampCoverage<'a> {
         self.index(at).map(|i| self.labels[i])
     }
 
-    /// The coverage of a texel relative to full coverage. For a texel of a lamp, full coverage is the largest coverage
-    /// of this lamp's texels, and the result is at least 0.5. For any other texel, full coverage is the largest such
-    /// value of the adjacent lamps, and the result is at most 0.5. `None` outside the texture.
+    /// The coverage of a texel, divided by full coverage. The full coverage of a lamp is the largest coverage of its
+    /// texels. A texel of a lamp is divided by the full coverage of this lamp, and the result is at least 0.5. Any
+    /// other texel is divided by the largest full coverage of the adjacent lamps, or by 1 if no lamp is adjacent, and
+    /// the result is at most 0.5. `None` outside the texture.
     pub fn coverage(&self, at: [isize; 2]) -> Option<f64> {
         let i = self.index(at)?;
         let around = AROUND.iter().filter_map(|[u, v]| self.label([at[0] + u, at[1] + v]));

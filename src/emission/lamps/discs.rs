@@ -35,10 +35,11 @@ fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
 ///
 /// - A kind protrudes if blur may have elongated each of its lamps ([`is_smeared`]), with an angle of at most
 ///   [`MAX_ALIGNED_ANGLE`] between the two long axes.
-/// - If all these lamps are parallel, none counts as protruding. This excludes a single lamp, and lamps in one line
-///   with the camera, such as a continuous row of tubes.
-/// - A further kind protrudes if each of its lamps is about as wide as one of those lamps, and if the angles are
-///   larger, but have cosines above [`MIN_COS_ALONG`].
+/// - If the lamps of all these kinds are parallel to each other, none counts as protruding. This excludes a single
+///   lamp, and lamps in one line with the camera, such as a continuous row of tubes.
+/// - A further kind protrudes if each of its lamps meets two conditions. The lamp is about as wide as a lamp of the
+///   kinds above. Blur may have elongated the lamp, where the cosine of the angle between the two long axes only needs
+///   to exceed [`MIN_COS_ALONG`].
 pub fn take_protruding(kinds: &mut Vec<Vec<Member>>) -> Vec<Vec<Member>> {
     let points_away = |kind: &Vec<Member>, min_cos: f64| kind.iter().all(|lamp| is_smeared(lamp, min_cos));
     let certain: Vec<&Member> =
@@ -103,8 +104,8 @@ fn double_angle(lamp: &Member) -> DVec2 {
 ///
 /// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. At least
 /// [`MIN_BLOOM_LAMPS`] round lamps are discs if bloom explains their long and short sides ([`BloomFit::shown`]).
-/// Otherwise, lamps are discs if at least half of them, by weight, are elongated along their blur, and if one of these
-/// conditions holds as well:
+/// Otherwise, lamps are discs if those elongated along their blur have at least half of the photo pixels of all lamps,
+/// and if one of these conditions holds as well:
 ///
 /// - They are round. Lamps are rarely oval, but a disc looks oval if it blooms, or if its cover protrudes from the
 ///   ceiling.
@@ -197,7 +198,8 @@ mod tests {
         assert!(design.size.y > 1.3 * design.size.x, "{}", design.size);
     }
 
-    /// A lamp of the given sides at `angle`, at a place where unwarping stretches photo pixels towards `away`.
+    /// An ellipse with the given sides and with its long axis at `angle`, where unwarping stretches photo pixels in the
+    /// direction `away`. Both angles are in radians, from x towards y.
     fn long_lamp(component: usize, size: DVec2, angle: f64, away: f64) -> Member {
         let stretch = DMat2::from_angle(away) * DMat2::from_diagonal(DVec2::new(2.0, 1.0)) * DMat2::from_angle(-away);
         oval(component, (size, angle), 300.0, stretch)
@@ -219,7 +221,7 @@ mod tests {
         let found = diameter(&protruding[0].iter().collect::<Vec<_>>()).unwrap();
         assert!((found - 21.5).abs() < 1.0, "{found}");
 
-        // Lamps in one line with the camera, and a single lamp, give no evidence.
+        // Lamps in one line with the camera, and a single lamp, give no evidence that they protrude.
         for angles in [vec![1.5, 1.5, 1.5], vec![1.2]] {
             let mut kinds: Vec<Vec<Member>> = angles.into_iter().map(|angle| vec![spot(0, 90.0, angle)]).collect();
             assert!(take_protruding(&mut kinds).is_empty());

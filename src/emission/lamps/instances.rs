@@ -35,8 +35,8 @@ pub struct Rules {
 }
 
 /// Places the lamps of which a patch map copies at least the share [`MIN_SHARE`]. Lamps with a larger copied share are
-/// placed first, because a place is given only once. Afterwards replaces each lamp that has few photo pixels by a
-/// similar lamp that has many.
+/// placed first: a lamp that is placed later must not overlap them. Afterwards replaces each lamp that few photo pixels
+/// show by a similar lamp that many photo pixels show.
 pub fn resolve(exemplar: &Exemplar, patch_map: &PatchMap, rules: Rules, seed: u64, job: Job) -> Result<Vec<Instance>> {
     let canvas = PatchLamps { patch_map, footprints: footprints(exemplar), wraps: rules.wraps };
     let claims = canvas.claims(exemplar.working.height, job)?;
@@ -53,8 +53,8 @@ struct PatchLamps<'a> {
 }
 
 impl PatchLamps<'_> {
-    /// The pixel of the texture at a position. Beyond its border, a tileable texture repeats; for any other texture,
-    /// the result is `None`.
+    /// The working pixel of the texture at column `x` and row `y`. Beyond its border, a tileable texture repeats; for
+    /// any other texture, the result is `None` there.
     fn texel(&self, x: i32, y: i32) -> Option<(usize, usize)> {
         let side = |at: i32, side: usize| match self.wraps {
             true => Some(at.rem_euclid(side as i32) as usize),

@@ -16,8 +16,9 @@ use std::collections::BTreeMap;
 /// [bench emission:real]
 const MAX_DIFFERENCE: f64 = 0.25;
 /// A lamp fills a share of its smallest enclosing rectangle. Between two lamps of one kind, this share differs by at
-/// most this value. It is about half the difference between a square and a disc, 1 - π/4 = 0.21: from 0.21 on, they
-/// would be one kind. The errors of outlines are allowed for by [`ROUNDING`]. [convention]
+/// most `MAX_FILL_DIFFERENCE`, plus an allowance for the errors of outlines ([`ROUNDING`]). The value is about half the
+/// difference between a square and a disc, 1 - π/4 = 0.21. With 0.21 or more, squares and discs would be one kind.
+/// [convention]
 const MAX_FILL_DIFFERENCE: f64 = 0.1;
 /// Maximum difference, in texels, between the measured sides of two equal lamps. The sides differ because outlines are
 /// rounded to texels and simplified. [rounding]
@@ -58,8 +59,8 @@ impl Measures {
     }
 }
 
-/// A bin of lamps of nearly equal shape. `shape` is that of the first lamp. `count` is the number of lamps in the
-/// texture that the bin stands for.
+/// A bin of lamps of nearly equal measures. `shape` holds the measures of the bin's first lamp. `count` is the number
+/// of lamps in the texture that the bin stands for.
 struct Bin<'a> {
     shape: Measures,
     lamps: Vec<&'a mut Luminaire>,

@@ -3,7 +3,7 @@
 //!
 //! Patches repeat the errors of the unwarped photo: some distant lamps are absent because the light mask missed them,
 //! and others are displaced because the unwarping is inexact. The mean position of all lamps of a site, weighted by
-//! their photo pixels, is more exact.
+//! their photo pixels, is more exact than the position of a single lamp.
 //!
 //! - A site that nearly always has a lamp in the photo gets one in every cell.
 //! - At any other site, the patch there decides whether there is a lamp. If there is one, it moves to the exact site.
@@ -40,7 +40,7 @@ const OVERLAP: f64 = 0.5;
 ///
 /// - A site that nearly always has a lamp in the exemplar gets one in every cell, whatever `shown` has there.
 /// - At any other site, the lamps of `shown` are moved exactly onto the site.
-/// - Lamps of `shown` near no site, and all of them if `law` has no lattice, stay where they are.
+/// - Lamps of `shown` that are near no site stay where they are. If `law` has no lattice, all lamps of `shown` stay.
 pub fn place(
     exemplar: &Exemplar,
     designs: &Designs,
@@ -141,12 +141,12 @@ fn sharpest(site: &Site, exemplar: &Exemplar, designs: &Designs) -> Vec<usize> {
     if sharp.is_empty() { vec![site.lamps[0].component] } else { sharp }
 }
 
-/// The number of a lamp's design; `None` if it has none.
+/// The index of a lamp's design in [`Designs::kinds`]; `None` if the lamp has no design.
 fn kind(lamp: &MeasuredLamp, designs: &Designs) -> Option<usize> {
     designs.of(lamp.component).map(|(_, fitted)| fitted.kind)
 }
 
-/// The design that most photo pixels of the lamps show; `None` if none of the lamps has a design.
+/// The index of the design that most photo pixels of the lamps show; `None` if none of the lamps has a design.
 fn main_kind<'a>(lamps: impl Iterator<Item = &'a MeasuredLamp>, designs: &Designs) -> Option<usize> {
     let mut shown = vec![0.0; designs.kinds.len()];
     lamps.filter_map(|lamp| Some((kind(lamp, designs)?, lamp.weight))).for_each(|(kind, weight)| shown[kind] += weight);

@@ -17,7 +17,7 @@ pub const MAX_ALIGNED_ANGLE: f64 = 0.07;
 /// share of the whole. [judged on 20 photos]
 const MIDDLE_SHARE: f64 = 0.6;
 
-/// A lamp of a kind, with the moments of its outline. Lengths are in unwarped pixels.
+/// A lamp of a kind, with its outline and the moments of the area inside the outline. Lengths are in unwarped pixels.
 pub struct Member {
     /// Index of the lamp's component in the exemplar.
     pub component: usize,

@@ -18,10 +18,12 @@ use glam::DVec2;
 /// Simplification may move an outline by at most this distance, in texels. The value is for outlines that run between
 /// the centres of texels. [rounding]
 const TOLERANCE: f64 = 0.1;
-/// Like `TOLERANCE`, but for outlines along the corners of texels. Such an outline is a staircase; this tolerance turns
-/// it into a straight line. It is used for narrow lamps, and if every texel is either fully lit or unlit. [rounding]
+/// Like `TOLERANCE`, but for outlines along the corners of texels. An oblique edge is a staircase in such an outline;
+/// this tolerance turns the staircase into a straight line. Outlines run along the corners of texels for narrow lamps,
+/// and if every texel is either fully lit or unlit. [rounding]
 const STAIRCASE_TOLERANCE: f64 = 1.0;
-/// The same for lamps a few texels wide, as a share of their width: a larger tolerance could remove a side. [rounding]
+/// Upper limit of `STAIRCASE_TOLERANCE` for narrow lamps, as a share of the lamp's width or height, whichever is
+/// smaller. With a larger tolerance, simplification could remove a side of the lamp. [rounding]
 const NARROW_TOLERANCE: f64 = 0.3;
 /// An outline runs along the corners of texels if the lamp is at most this many texels wide. An outline between texel
 /// centres would enclose only half of a single texel. [rounding]
@@ -30,12 +32,12 @@ const MAX_NARROW_WIDTH: f64 = 2.0;
 ///
 /// - `MIN_SIDE`: minimum length of a side whose direction is used. An end that is off by `TOLERANCE` turns a side of
 ///   this length by 3°, and a shorter side by more.
-/// - `MAX_EXTENDED`: maximum length by which a side is extended. An outline is traced where it crosses the lines
-///   between texel centres. A right-angled corner between sides along the rows and columns misplaces only the
-///   crossings of the texel that holds it. The last correct crossing of a side lies on the centre line of the next row
-///   or column, so it is 0.5 to 1.5 texels away from the corner.
-/// - `MAX_BLUNT`: maximum length of the blunt part between two sides. It runs from one such crossing to the other, so
-///   it is rarely longer than two texels.
+/// - `MAX_EXTENDED`: maximum length by which a side is extended. The outline is known only at its crossings with the
+///   lines between texel centres. If the sides run along the rows and columns, a right-angled corner falsifies only the
+///   crossings at the texel in which the corner lies. The last correct crossing of a side then lies on the centre line
+///   of the next row or column, 0.5 to 1.5 texels away from the corner.
+/// - `MAX_BLUNT`: maximum length of the blunt part between two sides. The blunt part runs from the last correct
+///   crossing of one side to the first correct crossing of the next side, so it is rarely longer than two texels.
 /// - `COS_CORNER`: cosine of 60°. At a corner, the outline must turn by at least 60° from one side to the next. A disc
 ///   gets no corners: its outline has sides of length `MIN_SIDE` only from a radius of 5 texels on. There,
 ///   `TOLERANCE` allows sides that span 23° each, so the outline turns by at most 46° from one side, over a blunt part,
@@ -108,8 +110,8 @@ impl Ring {
     pub fn outline(self, axis: DVec2, texture: DVec2) -> (Vec<DVec2>, DVec2) {
         let Self { mut crossings, corners, is_soft, narrow, origin } = self;
         let mut outline = if is_soft && narrow > MAX_NARROW_WIDTH {
-            // Begin at the point farthest from the centre: it is the same point of the lamp in every orientation.
-            // Simplification depends on where the outline begins, and equal lamps should get equal outlines.
+            // Simplification depends on where the outline begins, and equal lamps should get equal outlines. So begin
+            // at the point farthest from the centre, which is the same point of the lamp in every orientation.
             let middle = crossings.iter().sum::<DVec2>() / crossings.len() as f64;
             let first = farthest(&crossings, middle);
             crossings.rotate_left(first);

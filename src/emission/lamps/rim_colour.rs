@@ -31,15 +31,15 @@ const MIN_CHANNEL: f64 = 1.0 / 16.0;
 pub struct RimColours {
     /// Channel values of at least this are clipped.
     level: f32,
-    /// The colour of each component, scaled so that its strongest channel is 1. A component whose rim has too few
-    /// pixels gets the mean colour of all rims. `None` if all rims together have too few.
+    /// The colour of each component, scaled so that its strongest channel is 1. A component whose rim has fewer than
+    /// `MIN_RIM` pixels gets the mean colour of all rims. `None` if all rims together have fewer than `MIN_RIM` pixels.
     colours: Vec<Option<Vec3>>,
 }
 
 impl RimColours {
-    /// Reads the colour of each lamp from its rim, in an image in which channel values of at least `level` are
-    /// clipped. Returns `None` if nothing is clipped: if `level` is 0, if no lit pixel reaches it, or if a lit pixel
-    /// exceeds `MAX_CLIPPED`.
+    /// Reads the colour of each lamp from those pixels of its rim that `shown` marks. Channel values of at least
+    /// `level` count as clipped. Returns `None` if nothing is clipped: if `level` is 0, if no lit pixel reaches
+    /// `level`, or if a lit pixel exceeds `MAX_CLIPPED`.
     pub fn find(image: &Image, shown: &[bool], components: &Components, level: f32) -> Option<Self> {
         let colour = |i: usize| image.rgb(i % image.width, i / image.width);
         let lit = || components.labels.iter().enumerate().filter(|(_, label)| **label != 0);

@@ -28,8 +28,9 @@ const MIN_SHARP_SHARE: f64 = 0.4;
 const MAX_OBSTRUCTED: f64 = 0.05;
 
 /// Replaces each lamp that is not sharp, or that the photo does not show completely, by a similar lamp that is sharp
-/// and whole. The centre stays. If there are several such lamps, one is chosen at random for each instance, so that
-/// the texture shows all of them. If there is none, the lamp stays.
+/// and whole. The new lamp gets the centre of the lamp that it replaces. If there are several sharp and whole lamps,
+/// one is chosen at random for each instance, so that the texture shows all of them. If there is none, the lamp is not
+/// replaced.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -55,23 +56,23 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// Of similar lamps, returns those that are sharp ([`MIN_SHARP_SHARE`]).
+/// Returns those of the given lamps, which are similar, that are sharp ([`MIN_SHARP_SHARE`]).
 fn sharpest(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
     let max_area = lamps.iter().map(|&k| exemplar.photo_area[k]).fold(0.0, f64::max);
     lamps.retain(|&k| exemplar.photo_area[k] >= MIN_SHARP_SHARE * max_area);
     lamps
 }
 
-/// Of lamps of one kind, returns those that are not obstructed ([`MAX_OBSTRUCTED`]).
+/// Returns those of the given lamps, which are of one kind, that are not obstructed ([`MAX_OBSTRUCTED`]).
 fn unobstructed(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
     let min_dark = lamps.iter().map(|&k| exemplar.dark_share[k]).fold(f64::INFINITY, f64::min);
     lamps.retain(|&k| exemplar.dark_share[k] <= min_dark + MAX_OBSTRUCTED);
     lamps
 }
 
-/// Like [`show_sharpest`], but for lamps with a design: replaces each lamp that is not sharp, or that the photo does
-/// not show completely, by a sharp, whole and unobstructed lamp of its kind. The centre stays. If its kind has no such
-/// lamp, the lamp stays.
+/// Like [`show_sharpest`], but for lamps with a design: replaces each lamp that is not sharp, obstructed, or not shown
+/// completely by the photo. The new lamp is a sharp, whole and unobstructed lamp of the same kind, with the centre of
+/// the lamp that it replaces. If the kind has no such lamp, the lamp is not replaced.
 pub fn show_designed(exemplar: &Exemplar, designs: &Designs, instances: &mut [Instance], seed: u64) {
     let clear = |kind: usize| {
         let of_kind = move |k: &usize| designs.of(*k).is_some_and(|(_, fitted)| fitted.kind == kind);

@@ -3,17 +3,19 @@
 use crate::emission::exemplar::Exemplar;
 use glam::{DMat2, DVec2};
 
-/// The pairs of at most this number of lamps are compared. If there are more lamps, every k-th one is taken, with the
-/// smallest sufficient k. [bench emission:seconds]
+/// Maximum number of lamps whose pairs take part in the fit. If there are more lamps, only every k-th one is used, with
+/// the smallest k that keeps this maximum. [bench emission:seconds]
 const MAX_LAMPS: usize = 400;
 /// A pair of lamps takes part in the fit if the vector between them differs from a lattice vector by less than this
 /// share of the first period's length. [bench emission:patterns]
 const MAX_OFF_SITE: f64 = 0.12;
 /// Maximum number of lattice steps between the two lamps of a pair, along either basis vector, for each of the three
-/// passes of the fit. Step counts are whole, so rounding does not affect limits halfway between two counts. [rounding]
+/// passes of the fit. The limits lie halfway between whole numbers, so rounding errors cannot move a whole number of
+/// steps across a limit. [rounding]
 const MAX_STEPS: [f64; 3] = [1.5, 3.5, f64::INFINITY];
-/// If the pattern does not change along an axis, the search for lattices returns a shift of one pixel along the axis in
-/// place of a period. A basis vector that is at most this long, in unwarped pixels, is such a shift. [rounding]
+/// If the pattern does not change along the x or y axis, it has no period along this axis. The search for lattices then
+/// returns a shift of one unwarped pixel along the axis instead. A basis vector that is at most this long, in unwarped
+/// pixels, is such a shift. [rounding]
 pub const MAX_UNCHANGING_LENGTH: f64 = 1.5;
 
 /// Returns a period, made exactly parallel to the x or y axis if its slant is below `max_slant`. The slant is the
@@ -43,11 +45,12 @@ pub fn reduced([mut a, mut b]: [DVec2; 2]) -> [DVec2; 2] {
     [a, b]
 }
 
-/// Fits the first `count` (1 or 2) basis vectors `a`, `b` to the centres of lamps, by least squares. A pair of lamps
-/// takes part if both have about equal size and the vector between them is about `i a + j b` with integers `i` and `j`.
-/// The first pass uses close pairs only, the second more distant ones, and the third all pairs, because `i` and `j` of
-/// a distant pair are correct only if the basis is already accurate. A pair is weighted by the area of the smaller
-/// lamp, because small fragments resemble each other by chance.
+/// Refines the first `count` (1 or 2) vectors of `basis`, called `a` and `b` here, by a least-squares fit to the
+/// centres of lamps. A pair of lamps takes part if the two lamps have about equal sizes, and if the vector between
+/// their centres is about `i a + j b` with integers `i` and `j`. The first pass uses close pairs only, the second more
+/// distant ones, and the third all pairs, because `i` and `j` of a distant pair are correct only if the basis is
+/// already accurate. A pair is weighted by the area of the smaller lamp, because small fragments resemble each other by
+/// chance.
 pub fn refine(exemplar: &Exemplar, basis: [DVec2; 2], count: usize) -> [DVec2; 2] {
     let all: Vec<_> = exemplar.lamps().collect();
     let lamps: Vec<_> = all.iter().step_by(all.len().div_ceil(MAX_LAMPS).max(1)).collect();

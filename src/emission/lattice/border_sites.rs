@@ -1,5 +1,6 @@
-//! Excludes dark places that the border of the exemplar cuts. A place is one site of the lattice in one cell, with the
-//! size of the site's lamp. A place without a lamp is dark.
+//! Excludes dark places that the border of the exemplar cuts. A site is a position within the lattice cell at which
+//! lamps lie. A place is the rectangle that the lamp of a site occupies, or would occupy, in one cell. A place without
+//! a lamp is dark.
 //!
 //! Patches do not show a lamp that the border cuts, because only a part of it is visible. They must not show a dark
 //! place that the border cuts either. Otherwise, of the places at the border, patches would show only the dark ones,

@@ -36,7 +36,8 @@ pub fn of(exemplar: &Exemplar) -> DVec2 {
 pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
     let panes = || exemplar.components.list.iter();
     let [[width, column], [height, row]] = [spread(panes(), 0, usize::max), spread(panes(), 1, usize::max)];
-    // A single column or row of panes has bars along one axis only. Their width then serves for the other axis as well.
+    // A single column or row of panes has bars along one axis only. The width of these bars then serves for the other
+    // axis as well.
     let bar = |own: f64, other: f64| if own > 0.0 { own } else { other };
     DVec2::new(
         to_like_column(exemplar, 0).unwrap_or(width + bar(column, row)),
@@ -44,9 +45,9 @@ pub fn of_panes(exemplar: &Exemplar) -> DVec2 {
     )
 }
 
-/// The distance along an axis (0 for x, 1 for y) from the first to the last column of panes, in unwarped pixels, if the
-/// two are equally wide and a column between them is not. `None` for other columns, and if the first or the last one
-/// has no whole pane.
+/// The distance along an axis (0 for x, 1 for y) from the first to the last column of panes, in unwarped pixels, if
+/// these two columns are equally wide and some column between them has another width. `None` otherwise, and if the
+/// first or the last column has no whole pane.
 fn to_like_column(exemplar: &Exemplar, axis: usize) -> Option<f64> {
     let columns = intervals(exemplar.components.list.iter(), axis);
     let (&first, &last) = (columns.first()?, columns.last()?);
@@ -110,7 +111,8 @@ pub fn as_period(exemplar: &Exemplar) -> Law {
     Law::Whole([DVec2::X * cell, DVec2::Y * cell])
 }
 
-/// Whether there are too few lamps to find a period, or all lamps form one isolated group.
+/// Whether there are too few lamps to find a period ([`FEW_LAMPS`]), or all lamps form one isolated group
+/// ([`GROUP_MARGIN`]). `extent` is the size of the usable part of the exemplar in unwarped pixels.
 pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
     exemplar.lamps().count() < FEW_LAMPS || is_group(exemplar, extent)
 }

@@ -28,7 +28,8 @@ pub enum Law {
     /// The lights form a row. The first vector is the period along the row. The second vector leads across the row; its
     /// length follows from the extent of the exemplar or of its panes ([`super::row`]).
     Row([DVec2; 2]),
-    /// There are too few lights for a period. The exemplar repeats as a whole; both periods follow from its extent.
+    /// There are too few lights for a period, or all lights form one isolated group. The exemplar repeats as a whole;
+    /// both periods follow from its extent.
     Whole([DVec2; 2]),
     /// There are many lights, but no period. Patches are placed without a lattice.
     Free,

@@ -5,9 +5,11 @@
 //! does not hide a period: if a tenth of the lamps is missing, the correlation falls by about a tenth. The synthesis
 //! then shifts patches by lattice vectors only.
 //!
-//! - If there is only one such shift, the lamps form a row. The other period follows from the extent.
-//! - If there is none, and only a few lamps, the exemplar repeats as a whole. Its extents serve as both periods.
-//! - If there is none, but many lamps, patches are placed without a lattice.
+//! - If there is only one such shift, the lamps form a row. The second period leads across the row; its length follows
+//!   from the extent of the exemplar.
+//! - If there is none, and there are only a few lamps or one isolated group of lamps, the exemplar repeats as a whole.
+//!   The periods then follow from its width and its height.
+//! - If there is none, but there are many lamps, patches are placed without a lattice.
 
 pub mod basis;
 pub mod border_sites;
@@ -29,9 +31,9 @@ use correlation::Autocorrelation;
 use glam::DVec2;
 use law::Law;
 
-/// A shift may be a period only if its correlation is at least this share of the highest lower bound
-/// ([`Repeat::lower_bound`](repeats::Repeat::lower_bound)) of any shift. A shift with a lower correlation probably
-/// moves lamps onto lamps of another kind. [bench emission:patterns]
+/// The correlation at each shift has a lower bound ([`Repeat::lower_bound`](repeats::Repeat::lower_bound)). A shift may
+/// be a period only if its correlation is at least this share of the highest lower bound of all shifts. A shift with a
+/// lower correlation probably moves lamps onto lamps of another kind. [bench emission:patterns]
 const MIN_RELATIVE_CORRELATION: f32 = 0.9;
 /// The correlation at a shift counts only if at least this share of the valid pixels overlaps with valid pixels of the
 /// shifted image. [bench emission:patterns]
@@ -74,8 +76,8 @@ pub fn row(exemplar: &Exemplar, period: DVec2) -> Law {
     Law::Row([basis::straight(period, law::MAX_SLANT), across])
 }
 
-/// The law of lights without a period: an exemplar with few lamps repeats as a whole; otherwise there is no lattice.
-/// `extent` is the size of the usable part of the exemplar in unwarped pixels.
+/// The law of lights without a period. An exemplar with few lamps, or with one isolated group of lamps, repeats as a
+/// whole; otherwise there is no lattice. `extent` is the size of the usable part of the exemplar in unwarped pixels.
 pub fn without_period(exemplar: &Exemplar, extent: DVec2) -> Law {
     if !extent::has_few_lamps(exemplar, extent) {
         return Law::Free;
@@ -128,8 +130,8 @@ impl Correlated {
         }
     }
 
-    /// The correlation at a shift, given in unwarped pixels: the highest one of the four shifts by whole pixels of the
-    /// reduced image that are next to it. `None` if too few pixels overlap.
+    /// The correlation at a shift that is given in unwarped pixels: the highest correlation at the four neighbouring
+    /// shifts by whole pixels of the reduced image. `None` if too few pixels overlap.
     fn at(&self, shift: DVec2) -> Option<f32> {
         let [x, y] = (shift / self.to_unwarped).floor().to_array().map(|v| v as isize);
         let next = [(x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1)].into_iter();

@@ -8,13 +8,14 @@ use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::geometry::robust::weighted_median;
 use glam::DVec2;
 
-/// The distances to this number of neighbours are proposed as periods: to the next lamp, the second and the third one.
-/// For example, if each window has three panes side by side, the period of the windows is the distance from a pane to
-/// the third one after it. [convention]
+/// The distances from a lamp to this number of neighbours in its row or column are proposed as periods: to the first,
+/// the second and the third lamp after it. For example, if each window has three panes side by side, the period of the
+/// windows is the distance from a pane to the third pane after it. [convention]
 const ORDERS: usize = 3;
-/// Two lamps are in one row if their centres differ across the row by less than this share of the sum of their sizes,
-/// and neighbours if their centres differ along the row by more. At 0.5, lamps that only touch side by side would be in
-/// one row; at 0, blur would part the lamps of a row. The value lies in the middle. [convention]
+/// Let d be this share of the sum of the sizes of two lamps. The lamps are in one row if their centres differ across
+/// the row by less than d, and neighbours if their centres also differ along the row by more than d. At 0.5, lamps that
+/// only touch side by side would be in one row; at 0, blur would move the lamps of a row into different rows. The value
+/// lies in the middle. [convention]
 const MAX_OFF_ROW: f64 = 0.25;
 
 /// Proposes lattices along the axes: every pair of a period along x and a period along y.

@@ -35,8 +35,8 @@ impl Repeat {
     }
 }
 
-/// Whether the lights stay nearly the same under every shift along an axis, as long tubes do along their direction.
-/// Tests the shifts of 1, 2, 3, … pixels, as long as at least 2.5 `min_overlap` pixels overlap.
+/// Whether the lights stay nearly the same under every shift along an axis, for example because they are long tubes
+/// parallel to the axis. Tests the shifts of 1, 2, 3, … pixels, as long as at least 2.5 `min_overlap` pixels overlap.
 pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, min_overlap: f32) -> bool {
     let (dx, dy) = (axis.x as isize, axis.y as isize);
     let values: Vec<f32> = (1..).map_while(|i| correlation.at(dx * i, dy * i, 2.5 * min_overlap)).collect();
@@ -45,8 +45,9 @@ pub fn is_unchanging(correlation: &Autocorrelation, axis: DVec2, min_overlap: f3
 
 /// Finds the local maxima of the correlation at sub-pixel precision. Only one half-plane of shifts is searched, because
 /// opposite shifts have equal correlations. A maximum needs an overlap of `min_overlap` pixels and a correlation of
-/// `min_value`. `unchanging` is a direction, x or y, along which the lights do not change. The correlation then has
-/// ridges along this direction instead of peaks, so only shifts perpendicular to it are tested.
+/// `min_value`, and the correlation must fall beside it ([`MIN_FALL`]). `unchanging` is a direction, x or y, along
+/// which the lights do not change. The correlation then has ridges along this direction instead of peaks, so only
+/// shifts perpendicular to it are tested.
 pub fn peaks(
     correlation: &Autocorrelation,
     (width, height): (usize, usize),

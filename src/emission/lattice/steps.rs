@@ -1,7 +1,8 @@
-//! Finds periods along the axes from the steps between lamps of equal size.
+//! Finds periods along the axes from the steps between lamps. A step is the vector from the centre of one lamp to the
+//! centre of another lamp of about equal size.
 //!
-//! Autocorrelation compares areas, so it misses a step that only few lamps show, and steps to lamps of which the photo
-//! shows only a part. The differences between the centres of lamps show these steps.
+//! The autocorrelation compares areas, so it misses a step between only a few lamps, and a step to a lamp that the
+//! photo shows only in part. The centres of the lamps show these steps.
 
 use super::law::aligned;
 use crate::emission::exemplar::measured_lamp::MeasuredLamp;
@@ -9,8 +10,9 @@ use glam::DVec2;
 
 /// Maximum number of lamps between which steps are compared: the lamps with most photo pixels. [bench emission:seconds]
 const MAX_LAMPS: usize = 48;
-/// Two steps count as equal if they differ by at most this share of their length, plus the blur of both lamps.
-/// [judged on 50 photos]
+/// Two steps count as equal if, along x and along y, they differ by at most this share of the length of a step, plus
+/// the blur of the two lamps between which the step leads. The blur is about the length of a photo pixel at the lamp
+/// ([`MeasuredLamp`]). [judged on 50 photos]
 const MAX_DIFFERENCE: f64 = 0.04;
 /// A step is a period if at least `MIN_PAIRS` pairs of lamps show it, because a single pair shows no repetition. The
 /// number of pairs must also be at least `MIN_PAIRS_PER_LAMP` times the number of lamps, because some steps between

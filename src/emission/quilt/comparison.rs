@@ -37,7 +37,7 @@ const TASK: usize = 1 << 16;
 /// A shift with its score for a block.
 ///
 /// - `fills`: number of empty pixels of the block that the shift fills.
-/// - `excess`: number of lit pixels among these, minus the target number.
+/// - `excess`: number of lit pixels that the shift adds to these empty pixels, minus the target number.
 /// - `error`: d + p / n. Here n is the number of known pixels of the block, d is the mean squared difference from these
 ///   pixels, and p is the penalty for the excess ([`Balance::penalty`]).
 #[derive(Clone, Copy)]
@@ -60,7 +60,7 @@ pub struct Comparison<'a> {
     /// Lit share of the part of the exemplar that the photo shows.
     lit_share: f64,
     is_lattice: bool,
-    /// The value b of [`TOLERANCE`], which is added to the tolerated error.
+    /// The value b of [`TOLERANCE`]: the constant part of the largest error that counts as equally good.
     slack: f32,
 }
 

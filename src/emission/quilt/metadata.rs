@@ -15,7 +15,7 @@ use crate::exec;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
 
-/// Stands for the nearest lit pixel, or for the nearest lit row of a column, if there is none.
+/// Value in place of the index of the nearest lit pixel, or of the nearest lit row of a column, if there is none.
 const NONE: u32 = u32::MAX;
 
 /// Computes the metadata of each pixel of a `width` × `height` image. Channel 0 is the confidence. Channels 1 and 2 are

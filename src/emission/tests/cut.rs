@@ -42,8 +42,9 @@ fn a_rectangle_that_a_slanted_border_cuts_is_whole_in_the_texture() {
 
 #[test]
 fn a_lamp_in_a_corner_of_the_photo_does_not_run_through_it() {
-    // Five dark pixels lie to the left of the lamp. The slanted border cuts its right end, in the lower rows farther to
-    // the right, so that the lamp is as long as the row through its centre.
+    // Five dark pixels lie to the left of the lamp. The slanted border cuts its right end, and lies farther to the
+    // right in lower rows. The visible part of the lamp is therefore as long as the visible part of the row of pixels
+    // through its centre.
     let design = slanted(|x, y| (5.0..100.0).contains(&x) && y < 8.0);
     let result = continued(&design);
     let lamps = inner(&result.luminaires, 500, 400);
@@ -101,8 +102,9 @@ fn windows_of_panes_keep_the_wide_bars_between_them() {
     assert!((share(&result.mask) / share(&design.light) - 1.0).abs() < 0.1);
 }
 
-/// Columns of wide windows, with two panes side by side, alternate with columns of narrow ones. A lattice of all panes
-/// would predict their centres to within 4 pixels, but it would give them one width and one bar.
+/// Columns of wide windows, with two panes side by side, alternate with columns of narrow windows of one pane. A
+/// lattice with one pane per cell would predict the centres of all panes to within 4 pixels, but it would give all
+/// panes one width and all bars one width.
 #[test]
 fn windows_of_two_widths_keep_their_period() {
     let lies_in = |n: f64, panes: &[[f64; 2]]| panes.iter().any(|pane| (pane[0]..pane[1]).contains(&n));
@@ -185,7 +187,7 @@ fn copies_stay_apart_as_the_lamps_of_the_photo_do() {
 #[test]
 fn a_pattern_continues_where_the_photo_shows_its_end() {
     // The first three columns of lamps are missing, so the photo shows that the pattern ends at the left. The texture
-    // must have lamps everywhere all the same.
+    // must nevertheless have lamps everywhere.
     let lamp = grid(40.0, 36.0, 14.0, 10.0);
     let exemplar = Design::new(280, 180, |x, y| x > 110.0 && lamp(x, y));
     let photo = Some((&exemplar.unwarped, Homography(glam::DMat3::IDENTITY).into()));

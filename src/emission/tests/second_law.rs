@@ -10,7 +10,8 @@ fn a_texture_that_is_worse_than_darkness_is_replaced_by_a_better_law() {
     let again = |first: Emission, params: &Params| {
         try_other_laws(first, &design.input(), params, Monitor::default().job()).unwrap()
     };
-    // The texture by patches without a period stands for a first texture that fails: its error is set.
+    // Make a texture by patches without a period, and give it a large error, so that it counts as a failed first
+    // texture.
     let first = design.run(&Params { law: LawMode::Free, ..params.clone() }).unwrap();
     let bad = Emission { error: 2.5, ..first.clone() };
     let second = again(bad.clone(), &params);
@@ -19,14 +20,15 @@ fn a_texture_that_is_worse_than_darkness_is_replaced_by_a_better_law() {
     assert!(second.error < 0.02, "{}", second.error);
     assert_eq!(second.texture.data, design.run(&params).unwrap().texture.data);
 
-    // A law that the caller asks for is kept, and so is a texture that differs less than darkness.
+    // No other law is tried if the caller asks for a law, or if the texture differs less from the photo than a texture
+    // without light does.
     let asked = again(bad.clone(), &Params { law: LawMode::Free, ..params.clone() });
     assert_eq!((asked.law, asked.first_error, asked.error), (Law::Free, None, 2.5));
     let fair = again(Emission { error: 0.9, ..first.clone() }, &params);
     assert_eq!((fair.law, fair.first_error), (Law::Free, None));
 
-    // Every law must agree with the light that was expected of the first texture, not only with its own expectation:
-    // ten times as much light is expected here, and no law gives it.
+    // The textures of all laws are compared with the statistics that were expected of the first texture, not only with
+    // their own expectations. Here ten times as much light is expected, and no law gives that much.
     let mut expected = first.statistics[0];
     expected.lit *= 10.0;
     let hopeless = again(Emission { error: 1.3, statistics: [expected; 2], ..first }, &params);

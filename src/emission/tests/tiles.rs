@@ -7,7 +7,8 @@ use super::*;
 fn tiles_have_the_bits_of_the_whole_in_any_order() {
     let lattice = || Design::new(200, 180, grid(33.0, 29.0, 12.0, 9.0)).with_corners_cut();
     // Three cases need special rendering. At a scale of 0.11, the edges of lamps may have crumbs. Without
-    // `whole_lamps`, lights are copied patch by patch. The border cuts `lines`, which are copied as one piece each.
+    // `whole_lamps`, lights are copied patch by patch. The border of the exemplar cuts each of the `lines`, so each
+    // line is copied as one piece.
     let lines = Design::new(200, 200, |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && x < 120.0);
     let free = blobs(200, 180, 22.0).0;
     for (exemplar, params) in [

@@ -56,7 +56,7 @@ fn a_texture_by_another_law_is_still_doubted() {
     let warnings = second.warnings();
     assert_eq!((warnings[0].code, warnings[0].severity), (Code::NoPattern, 2.52));
     assert!(warnings[0].message.contains("10 %") && warnings[0].message.contains("252 %"), "{}", warnings[0].message);
-    // No other law was better.
+    // A second attempt that found no better law does not change the warnings.
     let first = Emission { error: 2.52, first_error: Some(2.52), ..made() };
     assert_eq!(first.warnings(), Emission { error: 2.52, ..made() }.warnings());
 }

@@ -12,31 +12,35 @@ use crate::exec;
 use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
 
-/// Shorter side of the coarsest bitmaps, in pixels, at least.
+/// Minimum length, in pixels, of the shorter side of the coarsest bitmaps.
 const MIN_SIDE: usize = 16;
 
-/// Pixels this close to the threshold are left out, because noise may move them across it. [paper §2.1: 4 of 255 codes]
+/// Pixels whose value differs from the threshold by at most this are left out, because noise may move them across the
+/// threshold. [paper §2.1: 4 of 255 codes]
 const MARGIN: f32 = 4.0 / 255.0;
 
-/// A shift must reduce the number of differing pixels by this many standard deviations of the number. [convention]
+/// A shift is accepted if it reduces the number of differing pixels by more than this many standard deviations of that
+/// number. [convention]
 const SIGNIFICANT: f64 = 3.0;
 
-/// Share of the pixels that must lie between the threshold and the clipped or black pixels, at least. [convention]
+/// Minimum share of the pixels with values between the black pixels and the threshold, and minimum share with values
+/// between the threshold and the clipped pixels. [convention]
 const CLEARANCE: f64 = 0.02;
 
-/// Encoded values below the first count as black, values from the second on as clipped. The encoding is a square root.
-/// [convention]
+/// Range of the usable encoded values, which are the square roots of the light. Values below the first number count as
+/// black, values from the second number on as clipped. [convention]
 const USABLE: [f32; 2] = [0.02, 0.97];
 
-/// Number of shifts that each level hands to the next finer one, because coarse levels may mislead. (The paper hands on
-/// one.)
+/// Number of best shifts that each level passes to the next finer level, because coarse levels may mislead. (The paper
+/// passes only one.)
 const KEPT: usize = 5;
 
 /// Number of bins for finding quantiles of the encoded values, which lie in `[0, 1]`.
 const BINS: usize = 1024;
 
-/// Finds the shift of each photo relative to the first in `order`, which is the order of exposure; `max_shift` is the
-/// largest shift between neighbours in pixels.
+/// Finds the shift of each photo, in pixels, relative to the first photo in `order`. `order` lists the photos by
+/// exposure. `max_shift` is the largest shift between two photos that are neighbours in `order`, in pixels; if it is 0,
+/// all shifts are 0.
 pub fn shifts(frames: &[Frame], order: &[usize], max_shift: usize, job: Job) -> Result<Vec<[isize; 2]>> {
     let mut found = vec![[0; 2]; frames.len()];
     if max_shift == 0 || order.len() < 2 {
@@ -61,7 +65,7 @@ fn image_of<'a>(frames: &[Frame<'a>], index: usize) -> &'a Image {
     frames[index].image
 }
 
-/// The encoded light of a photo, at its own size and halved `levels` times.
+/// Returns the encoded light of a photo at full size, then at 1/2, 1/4, … of this size: up to `levels` reduced copies.
 fn pyramid_of(image: &Image, levels: usize, job: Job) -> Result<Vec<Image>> {
     let mut encoded = Image::new(image.width, image.height, 1)?;
     exec::for_rows(&mut encoded.data, image.width, job.part(0.0, 0.5), |y, row| {
@@ -74,7 +78,8 @@ fn pyramid_of(image: &Image, levels: usize, job: Job) -> Result<Vec<Image>> {
     Ok(all)
 }
 
-/// Finds the shift from one photo to another, from the coarsest level to the finest.
+/// Finds the shift from one photo to another, from the coarsest level to the finest. The shift is 0 if the photos have
+/// no common threshold ([`common_quantile`]), or if no shift is significantly better than 0.
 fn shift_between(from: &[Image], to: &[Image], max_shift: isize, job: Job) -> Result<[isize; 2]> {
     let Some(quantile) = common_quantile(&from[0], &to[0]) else { return Ok([0; 2]) };
     let mut kept = vec![[0isize; 2]];
@@ -83,7 +88,7 @@ fn shift_between(from: &[Image], to: &[Image], max_shift: isize, job: Job) -> Re
         let found = ranked(&bitmaps, &doubled(&kept), max_shift, job)?;
         kept = found.iter().take(KEPT).map(|(shift, _)| *shift).collect();
     }
-    // At full size, go on to the best neighbour as long as it is better.
+    // At full size, move to the best neighbouring shift as long as this lowers the share of differing pixels.
     let bitmaps = [Bitmap::new(&from[0], quantile)?, Bitmap::new(&to[0], quantile)?];
     let mut best = ranked(&bitmaps, &doubled(&kept), max_shift, job)?[0];
     loop {
@@ -93,16 +98,18 @@ fn shift_between(from: &[Image], to: &[Image], max_shift: isize, job: Job) -> Re
         }
         best = next;
     }
-    // The shift must be better than no shift by more than chance.
+    // Accept the best shift only if it is better than no shift by more than chance.
     let unmoved = difference(&bitmaps, [0; 2]);
     let chance = SIGNIFICANT * (unmoved[0] as f64).sqrt() / unmoved[1].max(1) as f64;
     Ok(if part(best.1) < part(unmoved) - chance { best.0 } else { [0; 2] })
 }
 
-/// A shift, and the numbers of pixels that differ and that were compared.
+/// A shift, with two numbers of pixels: those that differ under this shift, and those that were compared.
 type Counted = ([isize; 2], [usize; 2]);
 
-/// Tries no shift, and the shifts `around` with their neighbours; the best first, and of equal ones the smallest.
+/// Counts the differing pixels for no shift, for the shifts `around`, and for the eight neighbours of each of them.
+/// Returns the shifts in ascending order of the share of differing pixels; of equal shares, the smallest shift comes
+/// first. Leaves out shifts that compare less than half as many pixels as no shift does.
 fn ranked(bitmaps: &[Bitmap; 2], around: &[[isize; 2]], max_shift: isize, job: Job) -> Result<Vec<Counted>> {
     let all = around.iter().flat_map(|shift| STEPS.map(|step| [shift[0] + step[0], shift[1] + step[1]]));
     let mut shifts: Vec<[isize; 2]> = all.filter(|shift| shift.iter().all(|s| s.abs() <= max_shift)).collect();
@@ -121,16 +128,16 @@ fn doubled(shifts: &[[isize; 2]]) -> Vec<[isize; 2]> {
     shifts.iter().map(|shift| shift.map(|s| 2 * s)).collect()
 }
 
-/// The part of the compared pixels that differ.
+/// Returns the share of the compared pixels that differ.
 fn part([differing, compared]: [usize; 2]) -> f64 {
     differing as f64 / compared.max(1) as f64
 }
 
-/// A shift and its eight neighbours.
+/// Steps from a shift to itself and to its eight neighbours, in pixels.
 const STEPS: [[isize; 2]; 9] = [[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1], [1, 1], [-1, 1], [1, -1], [-1, -1]];
 
-/// The quantile whose value is neither black nor clipped in two photos: the median if possible. `None` if there is no
-/// such quantile.
+/// Returns the quantile that serves as the threshold in both photos: the median or, if its value is black or clipped in
+/// a photo, the nearest quantile whose value is neither. `None` if there is no such quantile.
 fn common_quantile(a: &Image, b: &Image) -> Option<f64> {
     let share = |image: &Image, is_in: &dyn Fn(f32) -> bool| {
         image.data.iter().filter(|&&v| is_in(v)).count() as f64 / image.data.len() as f64
@@ -141,13 +148,14 @@ fn common_quantile(a: &Image, b: &Image) -> Option<f64> {
     (low < high).then(|| 0.5f64.clamp(low, high))
 }
 
-/// Which pixels are brighter than a quantile, and which are far enough from it to count.
+/// For each pixel, whether it is brighter than a threshold (a quantile of the photo's values), and whether it differs
+/// enough from the threshold to be compared.
 struct Bitmap {
     width: usize,
     height: usize,
-    /// 1 if the pixel is brighter, otherwise 0.
+    /// 1 if the pixel is brighter than the threshold, otherwise 0.
     above: Vec<u8>,
-    /// 1 if the pixel counts, otherwise 0.
+    /// 1 if the pixel is compared, otherwise 0.
     counts: Vec<u8>,
 }
 
@@ -160,7 +168,7 @@ impl Bitmap {
     }
 }
 
-/// The value below which the part `quantile` of the pixels lies.
+/// Returns the value below which the share `quantile` of the pixels lies, accurate to half a bin.
 fn value_at(image: &Image, quantile: f64) -> f32 {
     let mut bins = [0usize; BINS];
     image.data.iter().for_each(|&v| bins[((v * BINS as f32) as usize).min(BINS - 1)] += 1);
@@ -173,8 +181,8 @@ fn value_at(image: &Image, quantile: f64) -> f32 {
     (bin.unwrap_or(BINS - 1) as f32 + 0.5) / BINS as f32
 }
 
-/// The number of pixels at which two bitmaps differ, and the number of pixels compared, if pixel `p` of the first shows
-/// the same as pixel `p + shift` of the second.
+/// Compares pixel `p` of the first bitmap with pixel `p + shift` of the second. Returns the number of pixels that
+/// differ, and the number of pixels that were compared.
 fn difference([a, b]: &[Bitmap; 2], shift: [isize; 2]) -> [usize; 2] {
     let range = |size: usize, shift: isize| {
         let low = (-shift).max(0) as usize;

@@ -15,13 +15,15 @@ const ROUNDING: f64 = 0.05;
 /// Smallest standard error of a measured ratio, so that photos without noise have a finite weight. [rounding]
 const MIN_ERROR: f64 = 1e-6;
 
-/// Metadata and pixels contradict each other if the logarithms of their ratios differ by more than this, a third of a
-/// stop, the finest step of most cameras, and by more than this many standard errors of the measurement. [convention]
+/// Metadata and pixels contradict each other if the logarithms of their ratios differ by more than both limits.
+/// `MAX_CONTRADICTION` is a third of a stop, the finest step of most cameras. `SIGNIFICANT` is in standard errors of
+/// the measured logarithm. [convention]
 const MAX_CONTRADICTION: f64 = std::f64::consts::LN_2 / 3.0;
 const SIGNIFICANT: f64 = 3.0;
 
-/// Returns the ratio of the exposures `b` / `a` that metadata state: t S / N², with the exposure time t, the ISO speed
-/// S and the f-number N. S and N may be missing in both photos (adapted lenses record no N).
+/// Returns the ratio of the exposures `b` / `a` that metadata state. An exposure is t S / N², with the exposure time t,
+/// the ISO speed S and the f-number N. If S or N is missing in both photos, it counts as equal (adapted lenses record
+/// no N). `None` if a time is missing, or if only one photo lacks S or N.
 pub fn stated_ratio(a: &PhotoMetadata, b: &PhotoMetadata) -> Option<f64> {
     let ratio = |a: Option<f64>, b: Option<f64>| match (a, b) {
         (Some(a), Some(b)) => Some(b / a),
@@ -50,13 +52,15 @@ pub fn order(frames: &[Frame], metadata: &[PhotoMetadata], params: &Params, job:
     Ok(order)
 }
 
-/// The mean light of a photo, clipped at 1.
+/// Returns a measure of a photo's brightness: the sum of the light of its pixels, each clipped at 1, divided by the
+/// number of samples. It compares photos with equal numbers of channels.
 fn brightness(frame: &Frame) -> f64 {
     let pixels = frame.image.data.chunks_exact(frame.image.channels);
     pixels.map(|pixel| f64::from(light(pixel).min(1.0))).sum::<f64>() / (frame.image.data.len() as f64)
 }
 
-/// Two neighbours in the order of exposure: their indices, and the ratio of their exposures that the metadata state.
+/// Two photos that are neighbours in the order of exposure. `short` and `long` are their indices. `stated` is the ratio
+/// long / short of their exposures that the metadata state.
 pub struct ExposurePair {
     pub short: usize,
     pub long: usize,
@@ -64,7 +68,9 @@ pub struct ExposurePair {
 }
 
 impl ExposurePair {
-    /// Decides on the ratio of the exposures from all that is known about it.
+    /// Returns the ratio long / short of the exposures. The caller's exposures have precedence; otherwise
+    /// `params.source` says whether metadata, pixels or both determine the ratio. Returns an error if they do not state
+    /// or show it.
     pub fn ratio(&self, measured: Option<Ratio>, params: &Params) -> Result<Ratio> {
         if !params.exposures.is_empty() {
             let log = (params.exposures[self.long] / params.exposures[self.short]).ln();
@@ -88,8 +94,8 @@ impl ExposurePair {
         }
     }
 
-    /// The mean of a stated and a measured ratio, weighted by their reciprocal variances; an error if they contradict
-    /// each other.
+    /// Returns the mean of a stated and a measured ratio (of their logarithms), weighted by their reciprocal variances.
+    /// Returns an error if the two ratios contradict each other ([`MAX_CONTRADICTION`]).
     fn combined(&self, stated: Ratio, measured: Ratio) -> Result<Ratio> {
         let off = (measured.log - stated.log).abs();
         if off > MAX_CONTRADICTION && off > SIGNIFICANT * measured.error {
@@ -112,8 +118,9 @@ impl ExposurePair {
     }
 }
 
-/// Adds up the ratios of neighbours to the exposure of each photo relative to the reference. `order` lists the photos;
-/// `ratios[k]` is the ratio of the exposures `order[k + 1]` / `order[k]`.
+/// Multiplies the ratios of neighbours to obtain the exposure of each photo relative to the photo `reference`. `order`
+/// lists the photos by exposure; `ratios[k]` is the ratio of the exposures `order[k + 1]` / `order[k]`. The result is
+/// indexed like the photos.
 pub fn chain(order: &[usize], ratios: &[Ratio], reference: usize) -> Vec<Ratio> {
     let mut out = vec![Ratio { log: 0.0, error: 0.0 }; order.len()];
     let start = order.iter().position(|&photo| photo == reference).unwrap_or(0);

@@ -1,11 +1,11 @@
 //! Merges several exposures of one view, a bracket, into one linear image of high dynamic range.
 //!
-//! Photos of lit rooms clip at the lamps, whose colours and luminances are then lost. Shorter exposures show them. The
-//! steps: `exposures` orders the photos; `align` shifts them onto each other; `ratio` measures the ratios of their
-//! exposures, which `exposures` compares with the metadata; `motion` finds the pixels at which neighbouring exposures
-//! disagree, beyond the `noise` that it measures; `combine` averages the rest. The result has the frame and the scale
-//! of one photo, the reference: what this photo shows well has the same values in the result, and what it shows
-//! clipped gets the values above.
+//! Photos of lit rooms clip at the lamps, whose colours and luminances are then lost. Shorter exposures show the lamps
+//! unclipped. The steps: `exposures` orders the photos; `align` shifts them onto each other; `ratio` measures the
+//! ratios of their exposures, which `exposures` compares with the metadata; `noise` measures by how much neighbouring
+//! exposures differ; `motion` finds the pixels at which they disagree beyond this noise; `combine` averages the
+//! exposures that agree. The result has the pixel grid and the scale of one photo, the reference. Pixels that the
+//! reference shows well keep their values; pixels that it clips get the larger values that shorter exposures show.
 //!
 //! Not modelled: tone curves other than that of sRGB (the photos must be linear after loading), rotations and parallax
 //! between the photos, and lens flare, which differs between exposures only if the light does.
@@ -34,15 +34,15 @@ use frame::Frame;
 use noise::Noise;
 use ratio::Ratio;
 
-/// A pixel is well exposed if its light is at least the first value, about 40 of 255 codes, and its largest channel at
-/// most the second. [convention]
+/// A pixel is well exposed if its light is at least the first value (about 40 of 255 codes), and its largest channel is
+/// at most the second value. [convention]
 const WELL_EXPOSED: [f32; 2] = [0.02, 0.8];
 
-/// Natural logarithm of the largest ratio of two exposures, 1e18: the values of a photo divided by it fit into `f32`.
-/// [rounding]
+/// Natural logarithm of the largest ratio of two exposures, 1e18. The values of a photo, divided by this ratio, still
+/// fit into `f32`. [rounding]
 const MAX_LOG_RATIO: f64 = 18.0 * std::f64::consts::LN_10 + 1e-9;
 
-/// Merges photos of one view. `metadata[k]` belongs to `photos[k]`.
+/// Merges photos of one view. `metadata[k]` belongs to `photos[k]`. Returns the merged image and a report.
 pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job: Job) -> Result<(Image, Report)> {
     check(photos, params, job)?;
     let [first, ..] = photos else { return Err(Error::argument("count is 0")) };
@@ -120,7 +120,7 @@ fn of_one(image: &Image, metadata: &PhotoMetadata, params: &Params) -> Report {
     Report { photos: vec![photo], clipped: clipped as f64 / (image.width * image.height) as f64, ..Report::default() }
 }
 
-/// The index of the photo with the most pixels that are well exposed.
+/// Returns the index of the photo with the most well-exposed pixels ([`WELL_EXPOSED`]).
 fn best_exposed(frames: &[Frame], job: Job) -> Result<usize> {
     let counts = exec::map(frames.len(), job.part(0.0, 0.0), |k| {
         let pixels = frames[k].image.data.chunks_exact(frames[k].image.channels);
@@ -133,7 +133,8 @@ fn best_exposed(frames: &[Frame], job: Job) -> Result<usize> {
     Ok((0..counts.len()).rev().max_by_key(|&k| counts[k]).unwrap_or(0))
 }
 
-/// Compares the neighbours in the order of exposure: returns the ratios of their exposures, and where they disagree.
+/// Compares each pair of neighbours in the order of exposure. For each pair, returns the ratio of the exposures, and
+/// one flag per pixel: 1 where the two photos disagree. With `keep_moving`, the list of flags is empty.
 fn compare(
     frames: &[Frame],
     metadata: &[PhotoMetadata],

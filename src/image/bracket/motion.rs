@@ -1,9 +1,10 @@
-//! Finds the pixels at which two exposures disagree beyond noise, because something moved or its light changed.
+//! Finds the pixels at which two exposures disagree beyond noise, because an object moved or its illumination changed.
 //!
-//! The difference of the two exposures is averaged over 3 × 3 pixels, which a person or a leaf covers. It may have the
-//! measured deviation at its level of light, five standard deviations of the measured noise, the rounding of 8-bit
-//! codes, and the difference that the remaining misalignment makes, at most half a pixel, because the alignment is by
-//! whole pixels. Its size is measured where the photos have edges.
+//! The difference of the two exposures is averaged over 3 × 3 pixels, an area smaller than the image of a person or a
+//! leaf. Four causes of a difference are allowed for: the systematic deviation measured at the pixel's level of light;
+//! five standard deviations of the measured noise; the rounding of 8-bit codes; and the misalignment that remains
+//! because photos are aligned by whole pixels. The misalignment is at most half a pixel, and is measured at the edges
+//! in the photos.
 
 use super::frame::Frame;
 use super::noise::Noise;
@@ -12,34 +13,39 @@ use crate::exec;
 use crate::image::{Image, try_collect};
 use crate::job::Job;
 
-/// Number of standard deviations of the noise that are not disagreement: at 10 million pixels, chance exceeds five
-/// about six times. [convention]
+/// Two exposures disagree if they differ by more than this many standard deviations of the noise, beyond the other
+/// allowed differences. Among 10 million pixels, about six exceed five standard deviations by chance. [convention]
 const SIGMAS: f32 = 5.0;
 
-/// A pixel that is clipped in the long exposure disagrees if the short one predicts less than this part of the clipping
-/// value. [convention]
+/// A pixel that is clipped in the long exposure disagrees if the value that the short exposure predicts for it is less
+/// than this share of the clipping value. [convention]
 const PREDICTED: f32 = 0.8;
 
-/// Bounds of half a step of 8-bit sRGB in linear light: near black, and relative to the square root of the light.
+/// Half a step of 8-bit sRGB in linear light is at most the larger of two bounds. The first number is the bound near
+/// black; the second number times the square root of the light is the bound for brighter values.
 /// [convention: IEC 61966-2-1, 0.5 / 255 / 12.92 and 0.5 / 255 * 2.4 / 1.055]
 const HALF_CODE: [f32; 2] = [1.52e-4, 4.46e-3];
 
-/// The misalignment that is allowed, over its median at edges, and its largest value in pixels. [convention]
+/// The allowed misalignment is `MISALIGNMENT` times the median misalignment measured at edges, but at most
+/// `MAX_MISALIGNMENT` pixels. [convention]
 const MISALIGNMENT: f32 = 3.0;
 const MAX_MISALIGNMENT: f32 = 0.5;
 
-/// A pixel is at an edge if the light of its neighbours differs by more than this part of its own. [convention]
+/// A pixel is at an edge if a shift by one pixel along each axis may change its light by more than this share.
+/// [convention]
 const EDGE: f32 = 0.1;
 
-/// Number of pixels on which the misalignment is measured, about, and at least.
+/// The misalignment is measured at the edges among about `EDGES` pixels. If fewer than `MIN_EDGES` of them are at
+/// edges, the misalignment is taken to be `MAX_MISALIGNMENT`.
 const EDGES: usize = 1 << 16;
 const MIN_EDGES: usize = 64;
 
-/// Distance by which the pixels of a disagreement are extended, in pixels: the fringes of what moved.
+/// Number of pixels by which the areas of disagreement are extended on each side, to cover the fringes of moved
+/// objects.
 const FRINGE: usize = 2;
 
-/// Returns 1 for each pixel of the reference's frame at which two exposures disagree, otherwise 0. `ratio` is that of
-/// their exposures.
+/// Returns a flag for each pixel of the reference photo, which has `width × height` pixels: 1 if the two exposures
+/// disagree there, otherwise 0. `ratio` is the ratio long / short of the exposures.
 pub fn disagreement(
     [short, long]: [&Frame; 2],
     ratio: f32,
@@ -47,7 +53,8 @@ pub fn disagreement(
     [width, height]: [usize; 2],
     job: Job,
 ) -> Result<Vec<u8>> {
-    // For each pixel: the difference of the exposures, how far it may differ, and the variance of the noise.
+    // Compute for each pixel the difference of the exposures, the allowed difference apart from noise, and the variance
+    // of the noise.
     let mut found = Image::new(width, height, 3)?;
     let mut pair = FramePair { short, long, ratio, noise, misalignment: 0.0 };
     pair.misalignment = pair.measured_misalignment([width, height], job.part(0.0, 0.1))?;
@@ -66,19 +73,20 @@ pub fn disagreement(
     extended(&flags, width, job.part(0.9, 1.0))
 }
 
-/// Two neighbours in the order of exposure.
+/// Two photos that are neighbours in the order of exposure.
 struct FramePair<'a> {
     short: &'a Frame<'a>,
     long: &'a Frame<'a>,
     ratio: f32,
     noise: &'a Noise,
-    /// In pixels.
+    /// The allowed misalignment of the two photos, in pixels.
     misalignment: f32,
 }
 
 impl FramePair<'_> {
-    /// The difference of the exposures at a pixel, how far it may differ, and the variance of its noise; zeros if
-    /// the photos do not show it.
+    /// Returns three numbers for a pixel of the reference: the difference of the exposures, the allowed difference
+    /// apart from noise, and the variance of the noise. All are 0 if a photo does not show the pixel. They are also 0
+    /// if the long exposure clips the pixel, and the short one clips it too or predicts a value near or above clipping.
     fn difference(&self, x: usize, y: usize) -> [f32; 3] {
         let (Some([s, s_peak]), Some([l, l_peak])) = (self.short.levels(x, y), self.long.levels(x, y)) else {
             return [0.0; 3];
@@ -98,7 +106,8 @@ impl FramePair<'_> {
         [difference, allowed, spread * spread]
     }
 
-    /// Measures the misalignment: the median difference at edges, relative to the steps of the light there.
+    /// Measures the misalignment at edges: the median of the difference of the exposures divided by the change of light
+    /// per pixel. Returns the allowed misalignment in pixels ([`MISALIGNMENT`]).
     fn measured_misalignment(&self, [width, height]: [usize; 2], job: Job) -> Result<f32> {
         let step = ((width * height / EDGES) as f64).sqrt().ceil().max(1.0) as usize;
         let rows = exec::map(height.div_ceil(step), job, |row| {
@@ -120,7 +129,8 @@ impl FramePair<'_> {
         Ok((MISALIGNMENT * median).min(MAX_MISALIGNMENT))
     }
 
-    /// The difference that a shift by one pixel along each of the axes makes, at most, in the long exposure.
+    /// Returns an upper bound of the change of the light in the long exposure if the photo shifts by one pixel along
+    /// each axis.
     fn steps(&self, x: usize, y: usize, [s, l]: [f32; 2]) -> f32 {
         let mut steps = [0.0f32; 2];
         for (axis, step) in steps.iter_mut().enumerate() {
@@ -136,13 +146,14 @@ impl FramePair<'_> {
     }
 }
 
-/// Half a step of 8-bit sRGB at a value; 0 in a photo of a high dynamic range, which is not of 8 bits.
+/// Returns half a step of 8-bit sRGB at a value, in linear light. Returns 0 for a photo of high dynamic range, because
+/// such a photo does not have 8 bits.
 #[inline]
 fn half_code(frame: &Frame, value: f32) -> f32 {
     if frame.clip.is_finite() { HALF_CODE[0].max(HALF_CODE[1] * value.max(0.0).sqrt()) } else { 0.0 }
 }
 
-/// The sums of the three channels over a pixel and its neighbours.
+/// Returns the sums of the three channels over a pixel and its up to eight neighbours.
 fn around(found: &Image, x: usize, y: usize) -> [f32; 3] {
     let mut sums = [0.0; 3];
     for row in y.saturating_sub(1)..(y + 2).min(found.height) {
@@ -153,7 +164,7 @@ fn around(found: &Image, x: usize, y: usize) -> [f32; 3] {
     sums
 }
 
-/// Sets the pixels near the set ones, in a square.
+/// Also sets all pixels within `FRINGE` columns and rows of a set pixel.
 fn extended(flags: &[u8], width: usize, job: Job) -> Result<Vec<u8>> {
     let height = flags.len() / width;
     let near = |at: usize, size: usize| at.saturating_sub(FRINGE)..(at + FRINGE + 1).min(size);

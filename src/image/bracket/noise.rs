@@ -1,27 +1,29 @@
-//! How far two exposures of one pixel may differ: measured on the photos themselves, at each level of light.
+//! Measures by how much two exposures of an unmoved pixel differ, on the photos themselves, at each level of light.
 
 use super::ratio::{MAD_TO_SIGMA, Sample};
 use crate::error::Result;
 use crate::image::try_push;
 
-/// Levels of light: halves of octaves from 2^-16 to 2^16. [convention]
+/// Levels of light: `LEVELS` intervals of half an octave each, from 2^-16 to 2^16 (`LOWEST` is the exponent of the
+/// first). [convention]
 const LEVELS: usize = 64;
 const LOWEST: f32 = -16.0;
 const PER_OCTAVE: f32 = 2.0;
 
-/// A level is measured on at least this many pixels.
+/// The noise of a level is measured only if at least this many pixels belong to the level.
 const MIN_PIXELS: usize = 32;
 
-/// Limits of the measured deviation and spread, relative to the light, so that something that moves is not taken for
-/// noise where it covers most pixels of a level. The deviation allows for tone curves that are not those of sRGB. The
-/// spread is that of a camera that saturates at 500 electrons, as at high speeds, and a part of the light in addition.
+/// Limits of the measured median difference (`MAX_DEVIATION`) and of its standard deviation, as shares of the light.
+/// Without limits, a moving object that covers most pixels of a level would be taken for noise. `MAX_DEVIATION` allows
+/// for tone curves other than that of sRGB. The standard deviation may be that of two noises together: the share
+/// `MAX_SPREAD` of the light, and the photon noise of a camera that saturates at 500 electrons, as at high ISO speeds.
 /// [convention]
 const MAX_DEVIATION: f32 = 0.2;
 const MAX_SPREAD: f32 = 0.1;
 const MAX_PHOTON_NOISE: f32 = 1.0 / 500.0;
 
-/// The difference `long - ratio * short` of unmoved pixels, by level: its median and its robust standard deviation,
-/// relative to the light.
+/// The difference `long - ratio * short` of unmoved pixels: for each level of light, its median and its robust standard
+/// deviation, both divided by the light.
 pub struct Noise([[f32; 2]; LEVELS]);
 
 impl Noise {
@@ -47,23 +49,25 @@ impl Noise {
         })))
     }
 
-    /// Returns median and standard deviation of the difference at a level of light in the long exposure.
+    /// Returns the median and the standard deviation of the difference of two exposures. `light` is the pixel's light
+    /// in the long exposure.
     #[inline]
     pub fn at(&self, light: f32) -> [f32; 2] {
         self.0[level(light)].map(|v| v * light.max(0.0))
     }
 }
 
-/// The level to which a value of light belongs.
+/// Returns the index of the level to which a value of light belongs.
 #[inline]
 fn level(light: f32) -> usize {
-    // The exponent and the fraction of the float approximate the logarithm closely enough for levels.
+    // The bits of the float (exponent and fraction) give an approximate logarithm, which is accurate enough for levels.
     let log = light.max(0.0).to_bits() as f32 * (1.0 / (1 << 23) as f32) - 127.0;
     (((log - LOWEST) * PER_OCTAVE).max(0.0) as usize).min(LEVELS - 1)
 }
 
-/// The values of a level, or else the spread of the nearest level that was measured, which grows towards darkness as
-/// that of Poisson noise. Without any level, photos may differ by `MAX_SPREAD`.
+/// Returns the median and the standard deviation of a level. If the level was not measured, the median is 0, and the
+/// standard deviation is that of the nearest measured level; towards darker levels it grows as for Poisson noise. If no
+/// level was measured, the standard deviation is `MAX_SPREAD`.
 fn nearest(found: &[Option<[f32; 2]>; LEVELS], level: usize) -> [f32; 2] {
     if let Some(values) = found[level] {
         return values;

@@ -17,16 +17,17 @@ pub enum Source {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub source: Source,
-    /// Exposure of each photo in any unit, in `[1e-9, 1e9]`; empty if the library is to find the exposures.
+    /// Exposure of each photo, in any unit, in `[1e-9, 1e9]`. If the list is empty, the library finds the exposures.
     pub exposures: Vec<f64>,
-    /// Index of the photo that gives the result its scale and its frame; `None`: the photo with the most pixels that
-    /// are well exposed.
+    /// Index of the reference photo, which gives the result its scale and its pixel grid. `None`: the photo with the
+    /// most well-exposed pixels.
     pub reference: Option<usize>,
-    /// Whether to average pixels where the exposures disagree, too.
+    /// Whether to average all exposures also at pixels where they disagree.
     pub keep_moving: bool,
-    /// Largest shift between neighbouring exposures, as a part of the longer side, in `[0, 0.25]`; 0: no alignment.
+    /// Largest shift between neighbouring exposures, as a share of the photo's longer side, in `[0, 0.25]`. 0 turns the
+    /// alignment off.
     pub max_shift: f64,
-    /// Value in `[0.1, 1]` from which on a channel counts as clipped.
+    /// Smallest value at which a channel counts as clipped, in `[0.1, 1]`.
     pub saturation: f64,
 }
 
@@ -71,28 +72,28 @@ impl Params {
     }
 }
 
-/// What a merge found.
+/// The report about a merge.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Report {
-    /// Index of the reference.
+    /// Index of the reference photo.
     pub reference: usize,
-    /// Of each photo, in the order of the input.
+    /// A report about each photo, in the order of the input.
     pub photos: Vec<PhotoReport>,
-    /// Part of the pixels that are clipped in every exposure that shows them, in `[0, 1]`.
+    /// Share of the pixels that are clipped in every exposure that shows them, in `[0, 1]`.
     pub clipped: f64,
-    /// Part of the pixels at which the exposures disagree, in `[0, 1]`; 0 with `keep_moving`.
+    /// Share of the pixels at which the exposures disagree, in `[0, 1]`; 0 with `keep_moving`.
     pub moved: f64,
 }
 
-/// What a merge found about a photo.
+/// The report about one photo of a merge.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhotoReport {
     /// Exposure relative to the reference.
     pub exposure: f64,
     /// Standard error of the natural logarithm of the exposure: about its relative standard error.
     pub error: f64,
-    /// Exposure relative to the reference according to the metadata; 0: unknown.
+    /// Exposure relative to the reference according to the metadata; 0 if the metadata do not state it.
     pub stated: f64,
-    /// Column and row of this photo that show the part of the view that column 0 and row 0 of the reference show.
+    /// Column and row of the pixel of this photo that shows the same point as pixel (0, 0) of the reference photo.
     pub shift: [isize; 2],
 }

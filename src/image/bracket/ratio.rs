@@ -1,11 +1,11 @@
 //! Measures the ratio of two exposures from the pixels that both show well.
 //!
-//! If both values v of a pixel have Poisson noise, the maximum-likelihood estimate of the ratio r = long / short is the
-//! sum of the long values divided by the sum of the short values. It is unbiased if the pixels are selected by the sum
-//! of their two values: given the sum, each photon fell into the long exposure with the probability r / (1 + r). (A
-//! selection by the values themselves favours values that noise made smaller.) Pixels that do not follow the ratio,
-//! because something moved, get Tukey's weights. The error comes from the spread between blocks of the photo, so noise
-//! that is correlated between neighbours does not make it too small.
+//! If both values of each pixel have Poisson noise, the maximum-likelihood estimate of the ratio r = long / short is
+//! the sum of the long values divided by the sum of the short values. It is unbiased if the pixels are selected by the
+//! sum of their two values: given this sum, each photon fell into the long exposure with the probability r / (1 + r).
+//! (A selection by one of the values would favour values that noise made smaller.) Pixels that do not follow the ratio,
+//! because something moved, get small Tukey weights. The standard error is computed from the spread between blocks of
+//! the photo, so noise that is correlated between neighbouring pixels does not make it too small.
 
 use super::frame::Frame;
 use crate::error::Result;
@@ -13,20 +13,20 @@ use crate::exec;
 use crate::image::{try_collect, try_vec};
 use crate::job::Job;
 
-/// Number of pixels to look at; of larger photos, an even lattice of pixels. With 1 % of noise, this many determine the
-/// ratio to 0.003 %.
+/// Approximate maximum number of pixels that are read; a larger photo is read at an even lattice of pixels. With 1 % of
+/// noise, this number of pixels determines the ratio to 0.003 %.
 const MAX_PIXELS: usize = 1 << 18;
 
-/// A ratio is measured on at least this many pixels, in at least this many blocks.
+/// A ratio is measured only from at least `MIN_PIXELS` pixels in at least `MIN_BLOCKS` blocks of the photo.
 const MIN_PIXELS: usize = 64;
 const MIN_BLOCKS: usize = 4;
 
-/// Number of blocks along each side.
+/// Number of blocks along each side of the photo.
 const BLOCKS: usize = 8;
 
-/// A pixel is well exposed if the short exposure is expected to show at least the first value, which is more than five
-/// steps of 8-bit sRGB, and no channel of the long exposure more than the second times the clipping value.
-/// [convention]
+/// A pixel is well exposed if two conditions hold. Its expected value in the short exposure is at least the first
+/// number, which is more than five steps of 8-bit sRGB. The expected value of its largest channel in the long exposure
+/// is less than the second number times the clipping value. [convention]
 const WELL_EXPOSED: [f64; 2] = [0.002, 0.8];
 
 /// Tukey's constant, in standard deviations: 95 % efficiency for normal noise. [paper §4 of Beaton and Tukey 1974]
@@ -35,13 +35,14 @@ const TUKEY: f64 = 4.685;
 /// Standard deviation of normal noise over its median absolute deviation. [convention]
 pub const MAD_TO_SIGMA: f64 = 1.4826;
 
-/// Smallest spread, relative to the square root of the values, so that equal photos have weights. [rounding]
+/// Minimum standard deviation of the residuals, relative to the square root of the values. It keeps weights finite for
+/// photos without noise. [rounding]
 const MIN_SPREAD: f64 = 1e-6;
 
-/// Number of steps of the reweighting, which converges by a factor of about 5 per step.
+/// Number of reweighting steps. Each step reduces the error by a factor of about 5.
 const STEPS: usize = 8;
 
-/// Range and bins of the logarithm of the ratio for the first guess. [convention]
+/// Range of the logarithm of the ratio, and number of bins, in the histogram that gives the first guess. [convention]
 const LOG_RANGE: [f64; 2] = [-2.0, 16.0];
 const LOG_BINS: usize = 1800;
 
@@ -57,10 +58,10 @@ pub struct Ratio {
 /// A pixel that is clipped in neither photo.
 #[derive(Clone, Copy)]
 pub struct Sample {
-    /// Light in the two photos.
+    /// Light of the pixel in the short and in the long exposure.
     pub short: f32,
     pub long: f32,
-    /// Largest channels in the two photos.
+    /// Largest colour channel of the pixel in the short and in the long exposure.
     short_peak: f32,
     long_peak: f32,
     block: u32,
@@ -82,7 +83,8 @@ pub fn samples(short: &Frame, long: &Frame, [width, height]: [usize; 2], job: Jo
     try_collect(rows.into_iter().flatten())
 }
 
-/// Measures the ratio of two exposures; `None` if too few pixels are well exposed in both.
+/// Measures the ratio long / short of two exposures. `clip` is the clipping value of the long exposure. `None` if too
+/// few pixels are well exposed in both photos, or if they lie in too few blocks.
 pub fn measure(samples: &[Sample], clip: f32) -> Result<Option<Ratio>> {
     let Some(mut ratio) = first_guess(samples) else { return Ok(None) };
     let well = try_collect(samples.iter().filter(|s| is_well_exposed(s, ratio, clip)).copied())?;
@@ -103,8 +105,8 @@ pub fn measure(samples: &[Sample], clip: f32) -> Result<Option<Ratio>> {
     Ok(error.map(|error| Ratio { log: ratio.ln(), error }))
 }
 
-/// The weighted median of the ratios of single pixels. The weights are the reciprocal variances of the logarithms, for
-/// Poisson noise.
+/// Returns the weighted median of the ratios of single pixels. The weights are the reciprocal variances of the ratios'
+/// logarithms under Poisson noise.
 fn first_guess(samples: &[Sample]) -> Option<f64> {
     let mut bins = [0.0; LOG_BINS];
     let width = (LOG_RANGE[1] - LOG_RANGE[0]) / LOG_BINS as f64;
@@ -122,10 +124,10 @@ fn first_guess(samples: &[Sample]) -> Option<f64> {
     Some((LOG_RANGE[0] + (bin as f64 + 0.5) * width).exp())
 }
 
-/// Whether a pixel is well exposed in both photos. This is judged by the sum of its two values, so that noise does not
-/// select pixels that are bright in one photo and dark in the other. Besides, the value that the short exposure
-/// predicts for the long one must not be clipped: at the edges of lamps, one photo may show the lamp and the other its
-/// surroundings.
+/// Whether a pixel is well exposed in both photos. The test uses the sum of the pixel's two values, so that noise does
+/// not select pixels that are bright in one photo and dark in the other. In addition, the value that the short exposure
+/// predicts for the long exposure must not be clipped: at the edges of lamps, one photo may show the lamp and the other
+/// its surroundings.
 fn is_well_exposed(s: &Sample, ratio: f64, clip: f32) -> bool {
     let short = f64::from(s.short + s.long) / (1.0 + ratio);
     let long_peak = f64::from(s.short_peak + s.long_peak) * ratio / (1.0 + ratio);
@@ -133,10 +135,10 @@ fn is_well_exposed(s: &Sample, ratio: f64, clip: f32) -> bool {
     is_open && short >= WELL_EXPOSED[0] && long_peak < WELL_EXPOSED[1] * f64::from(clip)
 }
 
-/// Sets Tukey's weights for the residuals `long - ratio * short`, relative to the square root of their expected
-/// variance, and the slopes of the weighted residuals. The variance depends equally on the values of both photos, so
-/// that edges that lie differently in the photos have no preferred sign.
-/// `sizes` is working memory with an element for each sample.
+/// Computes for each sample Tukey's weight, and the slope (derivative) of the weighted residual. The residual is
+/// `long - ratio * short`, divided by the square root of its expected variance. This variance depends equally on the
+/// values of both photos, so that edges that lie differently in the photos have no preferred sign. `sizes` is working
+/// memory with one element per sample.
 fn reweigh(samples: &[Sample], ratio: f64, sizes: &mut [f64], weights: &mut [[f64; 2]]) {
     let residual = |s: &Sample| {
         let (short, long) = (f64::from(s.short), f64::from(s.long));

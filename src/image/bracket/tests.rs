@@ -17,7 +17,7 @@ struct Camera {
 const CAMERA: Camera = Camera { electrons: 20_000.0, readout: 4.0 };
 
 impl Camera {
-    /// Photographs a scene with an exposure; the photo's column and row 0 show the scene's pixel `corner`.
+    /// Photographs a scene with an exposure. Pixel (0, 0) of the photo shows the scene's pixel `corner`.
     fn shoot(self, scene: &Image, exposure: f64, corner: [usize; 2], size: [usize; 2], seed: u64) -> Image {
         Image::from_fn(size[0], size[1], |x, y| {
             let mut rng = Rng::new(seed, &[x as u64, y as u64]);
@@ -81,7 +81,7 @@ fn merged(photos: &[Image], params: &Params) -> Result<(Image, Report)> {
     run(&photos.iter().collect::<Vec<_>>(), &vec![PhotoMetadata::default(); photos.len()], params)
 }
 
-/// Three photos of a room, a factor of 4 apart.
+/// Returns a scene of a room, and three photos of it. Each exposure is a quarter of the exposure before it.
 fn three(width: usize, height: usize, seed: u64) -> (Image, Vec<Image>) {
     let scene = room(width, height, seed);
     let shoot = |k: u64| CAMERA.shoot(&scene, 0.25f64.powi(k as i32), [0, 0], [width, height], hash(seed, &[k]));
@@ -121,15 +121,17 @@ fn the_merged_noise_is_that_of_the_theory() {
             (0..32 * 32).flat_map(|i| image.pixel(32 * k + i % 32, i / 32).iter().map(|&v| f64::from(v))).collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         let error = (values.iter().map(|v| (v - level).powi(2)).sum::<f64>() / values.len() as f64).sqrt();
-        // The Cramér-Rao bound of all exposures that are not faded: the information of each is e² / variance.
+        // The Cramér-Rao bound from all exposures that are not faded: an exposure e has the Fisher information e² /
+        // variance.
         let information = |e: f64| if e * level < 0.72 { e * e / CAMERA.variance(e * level) } else { 0.0 };
         let total: f64 = exposures.iter().map(|&e| information(e)).sum();
         if total == 0.0 {
             continue;
         }
         let bound = total.powf(-0.5);
-        // 3072 values: the standard error of a standard deviation is 1.3 %, that of the mean 1.8 % of it. What the
-        // rounding to codes adds to one patch is not random, hence the wider limit of the mean.
+        // There are 3072 values, so the standard error of their standard deviation is 1.3 % of it, and that of their
+        // mean is 1.8 % of it. The limit of the mean is wider, because the error that rounding to codes adds to one
+        // patch is not random.
         assert!(error < 1.12 * bound, "level {level}: error {error}, bound {bound}");
         assert!((mean - level).abs() < 0.25 * bound, "level {level}: mean {mean}, bound {bound}");
     }
@@ -152,8 +154,9 @@ fn ratios_lie_in_their_intervals() {
         squares += off * off;
         assert!(found.error < 0.003, "{found:?}");
     }
-    // 95 % of the intervals hold the ratio. The limits are three and a half standard deviations of the binomial count,
-    // of the mean, and of the mean square.
+    // Three quantities are tested: the share of the 95 % intervals that hold the true ratio, and the mean and the mean
+    // square of the errors in units of their standard errors. Each limit is three and a half standard deviations of its
+    // quantity.
     let n = trials as f64;
     let share = inside as f64 / n;
     assert!(
@@ -182,7 +185,7 @@ fn shifts_of_whole_pixels_are_found_exactly() {
             let expected = [0, 1].map(|axis| from[axis] as isize - corners[k][axis] as isize);
             assert_eq!(photo.shift, expected, "seed {seed}, photo {k}");
         }
-        // The result has the frame of the reference.
+        // The result has the pixel grid of the reference photo.
         let scale = f64::from(0.25f32.powi(report.reference as i32));
         let errors = (20..120).map(|y| {
             let exact = f64::from(scene.pixel(90 + from[0], y + from[1])[1]) * scale;
@@ -211,7 +214,7 @@ fn lamps_get_their_colours_and_luminances() {
         }
     }
     assert_eq!(report.clipped, 0.0);
-    // The scale is that of any reference.
+    // With another reference photo, the result has the scale of that photo.
     let (scaled, _) = merged(&photos, &Params { reference: Some(1), ..Params::default() }).unwrap();
     let mean = |image: &Image| image.data.iter().map(|&v| f64::from(v)).sum::<f64>();
     assert!((4.0 * mean(&scaled) / mean(&image) - 1.0).abs() < 0.003);
@@ -371,7 +374,7 @@ fn brackets_without_common_pixels_need_stated_exposures() {
         let error = merged(&photos, &Params::default()).unwrap_err();
         assert_eq!(error.kind, ErrorKind::Degenerate);
         assert!(error.message.contains("set params.exposures"), "{error}");
-        // With exposures, clipped pixels have the value that the shortest exposure says they exceed.
+        // With stated exposures, a clipped pixel gets the lower bound that the shortest exposure gives.
         let params = Params { exposures: vec![0.5, 1.0], reference: Some(1), ..Params::default() };
         let (image, report) = merged(&photos, &params).unwrap();
         let expected = if values[0] == 1.0 { 2.0 } else { 0.0 };
@@ -439,7 +442,7 @@ fn a_tone_curve_of_the_camera_contradicts_the_metadata() {
     assert_eq!(error.kind, ErrorKind::InvalidArgument);
     assert!(error.message.contains("not linear"), "{error}");
     for source in [Source::Metadata, Source::Pixels] {
-        // The exposures differ, so the result keeps to the reference where that is not clipped.
+        // The exposures differ, so the result keeps the reference's values where the reference is not clipped.
         let params = Params { source, reference: Some(0), ..Params::default() };
         let (image, _) = run(&all, &times, &params).unwrap();
         let shown = image.data.iter().zip(&photos[0].data).filter(|(_, p)| (0.05..0.7).contains(*p));
@@ -450,7 +453,8 @@ fn a_tone_curve_of_the_camera_contradicts_the_metadata() {
 
 #[test]
 fn shifts_by_parts_of_a_pixel_are_not_taken_for_motion() {
-    // A room in quarters of a pixel; the second photo is shifted by (1.5, 0.75) pixels, the third by (-0.5, 0.25).
+    // A pixel of a photo covers 4 × 4 pixels of the scene. The second photo is shifted by (1.5, 0.75) pixels, the third
+    // by (-0.5, 0.25).
     let fine = room(800, 640, 13);
     let size = [180, 140];
     let photos: Vec<Image> = [[20, 20], [26, 23], [18, 21]]

@@ -107,8 +107,9 @@ impl Inks {
     }
 
     /// Interpolates in magenta, yellow and black at one grid point of cyan. Starts with the colour at the low corner of
-    /// `cell`. Then steps to the next grid point along one axis after another, in descending order of their fractions
-    /// `part`. Each step adds its difference of colour times the fraction of its axis.
+    /// `cell`. Then steps to the next grid point along one axis after another, in descending order of the axes'
+    /// fractions `part`. Each step adds the difference between the colours of its two grid points, multiplied by the
+    /// fraction of its axis.
     fn tetrahedron(&self, cell: [usize; INKS], part: [f32; INKS]) -> Vec3 {
         let mut axes = [1, 2, 3];
         axes.sort_unstable_by(|&a, &b| part[b].total_cmp(&part[a]));

@@ -10,8 +10,8 @@ use crate::image::file_colour::FileColour;
 pub(super) use exif::{Exif, read};
 
 /// Relative standard deviation of a focal length from EXIF. The focal length marked on a lens is accurate to about 5 %.
-/// Besides, the 35 mm equivalent is rounded to a millimetre. Some cameras state it for an equal diagonal of the
-/// picture, others for an equal width; the two differ by 4 % at 4:3. [convention]
+/// Besides, the 35 mm equivalent is rounded to a millimetre. Some cameras compute this equivalent for a film picture of
+/// equal diagonal, others for one of equal width; the two results differ by 4 % at 4:3. [convention]
 const FOCAL_ERROR: f64 = 0.05;
 
 /// Diagonal in millimetres of film of 36 x 24 mm, to which equivalent focal lengths refer. [convention: CIPA DCG-001]

@@ -383,7 +383,8 @@ impl Broadcast {
         Ok(out)
     }
 
-    /// Returns the elements of a tensor broadcast to the common shape.
+    /// Returns the elements of a tensor, broadcast to the common shape. `tensor` is the index of the tensor, `values`
+    /// are its elements.
     pub fn all<T: Copy + Send + Sync>(&self, tensor: usize, values: &[T], zero: T, call: &Call) -> Result<Vec<T>> {
         let mut out = call.budget.vec(count(&self.shape)?, zero)?;
         let length = self.shape.last().copied().unwrap_or(1);

@@ -9,7 +9,7 @@ use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder, ZipSliceAr
 /// Maximum number of files in a container. [convention]
 const MAX_FILES: u64 = 4096;
 
-/// A file of the container: its name as bytes, and its place.
+/// A file of the container: its name as bytes, and its place in the archive.
 struct Entry {
     name: Vec<u8>,
     method: CompressionMethod,
@@ -30,7 +30,7 @@ impl<'a> Container<'a> {
     /// Reads the list of files.
     ///
     /// # Errors
-    /// `Format` if the archive is damaged, or has too many files or two of one name.
+    /// `Format` if the archive is damaged, has too many files, or has two files of one name.
     pub fn new(bytes: &'a [u8]) -> Result<Self> {
         let archive = ZipArchive::from_slice(bytes).map_err(damaged)?;
         let stated = archive.entries_hint();
@@ -62,7 +62,8 @@ impl<'a> Container<'a> {
         Ok(Self { archive, entries })
     }
 
-    /// Unpacks the file with a name, of at most `limit` bytes. Upper and lower case are not distinguished.
+    /// Unpacks the file with the given name, whose unpacked size must be at most `limit` bytes. Upper and lower case of
+    /// ASCII letters are not distinguished.
     ///
     /// # Errors
     /// `NotFound` if no file has the name; `Format` if the file is damaged or too large; `Unsupported` if it is
@@ -74,7 +75,8 @@ impl<'a> Container<'a> {
     fn unpack(&self, name: &str, limit: usize) -> Result<Vec<u8>> {
         let lower = name.to_ascii_lowercase();
         let entry = self.entries.iter().find(|entry| entry.name == lower.as_bytes());
-        // Old programs write names in a code page, with a byte for each character.
+        // If no name is equal to `name`, take the only file whose name can be `name` in a code page: old programs write
+        // names with one byte for each character.
         let alike = || {
             let mut alike = self.entries.iter().filter(|entry| is_alike(&lower, &entry.name));
             alike.next().filter(|_| alike.next().is_none())
@@ -111,7 +113,8 @@ impl<'a> Container<'a> {
     }
 }
 
-/// Whether a name in a code page can be `name`: the ASCII characters are equal, and each other character is one byte.
+/// Whether `bytes` can be `name` in an unknown code page: the ASCII characters are equal, and each other character is
+/// one byte. False for a `name` of ASCII characters alone.
 fn is_alike(name: &str, bytes: &[u8]) -> bool {
     !name.is_ascii()
         && name.chars().count() == bytes.len()

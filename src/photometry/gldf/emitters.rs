@@ -1,4 +1,4 @@
-//! Reads emitters: a photometry, the flux and the power of the lamps, and their colour.
+//! Reads the emitters of a GLDF product: the photometry of each, and the flux, power and colour of its lamps.
 
 use super::super::luminaire::Luminaire;
 use super::super::sum::{MAX_PARTS, sum};
@@ -11,24 +11,26 @@ use super::shape::{self, Shape};
 use crate::error::{Error, ErrorKind, Result};
 use std::cell::Cell;
 
-/// Fluxes in a description are whole lumens: a smaller difference from the photometry's flux is rounding. [convention]
+/// A description states fluxes in whole lumens. If a stated flux differs from the photometry's flux by less than this,
+/// in lumens, the difference is taken as rounding and ignored. [convention]
 const WHOLE_LUMEN: f64 = 1.0;
-/// The largest flux in lumens and power in watts. [convention]
+/// Largest flux in lumens (`MAX_FLUX`), and largest power in watts (`MAX_POWER`). [convention]
 const MAX_FLUX: f64 = 1e12;
 const MAX_POWER: f64 = 1e9;
 
-/// The definitions of a product.
+/// Reads the emitters of one variant from the definitions of a product.
 pub struct Emitters<'a, 'b> {
     container: &'b Container<'b>,
     definitions: Element<'a>,
     /// The simple geometry of the variant, which replaces the openings of the photometries.
     shape: Option<Shape>,
-    /// Numbers of the photometries and of the intensities that were read.
+    /// Number of photometries read so far (`photometries`), and number of their intensities (`values`).
     photometries: Cell<usize>,
     values: Cell<usize>,
 }
 
-/// What the description says of an emitter's lamps; 0 if it says nothing.
+/// Properties of an emitter's lamps as the description states them: flux in lumens, power in watts, colour temperature
+/// in kelvin, and colour rendering index. A property that is not stated is 0.
 #[derive(Default)]
 struct Lamps {
     flux: f64,
@@ -42,7 +44,7 @@ impl<'a, 'b> Emitters<'a, 'b> {
         Self { container, definitions, shape, photometries: Cell::new(0), values: Cell::new(0) }
     }
 
-    /// Finds a definition by its id.
+    /// Returns the element of the kind `kind` with the given id from the list `list` of the definitions.
     fn find(&self, list: &str, kind: &str, id: &str) -> Result<Element<'a>> {
         let found = self.definitions.find(list);
         found.and_then(|list| list.all(kind).find(|e| e.attribute("id") == Some(id))).ok_or_else(|| {
@@ -51,15 +53,17 @@ impl<'a, 'b> Emitters<'a, 'b> {
         })
     }
 
-    /// Follows a reference of `element`, such as `PhotometryReference` with its attribute `photometryId`.
+    /// Follows a reference in `element`, such as `PhotometryReference` with its attribute `photometryId`, and returns
+    /// the definition with that id.
     fn follow(&self, element: Element, [name, attribute]: [&str; 2], [list, kind]: [&str; 2]) -> Result<Element<'a>> {
         let reference = element.find(name).and_then(|reference| reference.attribute(attribute));
         let Some(id) = reference else { return Err(element.error(format_args!("{name} with {attribute} is missing"))) };
         self.find(list, kind, id)
     }
 
-    /// Reads the emitter with an id. Of several light emitters in it, which can be exchanged for each other, the first
-    /// is read that shines in normal operation. Returns `None` if there is none, as in a sensor.
+    /// Reads the emitter with the given id. An emitter may list several light emitters that can replace each other; of
+    /// these, the first one that shines in normal operation is read. Returns `None` if the emitter has none, as a
+    /// sensor.
     pub fn read(&self, id: &str) -> Result<Option<Luminaire>> {
         let emitter = self.find("Emitters", "Emitter", id)?;
         let is_normal = |e: &Element| e.attribute("emergencyBehaviour") != Some("EmergencyOnly");
@@ -103,7 +107,7 @@ impl<'a, 'b> Emitters<'a, 'b> {
         Ok(scaled(self.photometry(light)?, &all))
     }
 
-    /// Adds the channels of a light source up, at full power.
+    /// Returns the sum of all channels of a multi-channel light source, each at full power.
     fn channels(&self, light: Element) -> Result<Luminaire> {
         let reference = ["LightSourceReference", "multiChannelLightSourceId"];
         let source = self.follow(light, reference, ["LightSources", "MultiChannelLightSource"])?;
@@ -118,8 +122,9 @@ impl<'a, 'b> Emitters<'a, 'b> {
         Ok(scaled(sum(parts)?, &lamps(source)?))
     }
 
-    /// Reads the photometry that `element` refers to. Bounds the number of photometries and of their intensities, as
-    /// many emitters and channels can refer to one large file.
+    /// Reads the photometry that `element` refers to. Returns an error if the variant has too many photometries, or if
+    /// these have too many intensities: many emitters and channels can refer to one large file, which is then read many
+    /// times.
     fn photometry(&self, element: Element) -> Result<Luminaire> {
         let count = self.photometries.get() + 1;
         if count > MAX_PARTS {
@@ -163,7 +168,7 @@ impl<'a, 'b> Emitters<'a, 'b> {
     }
 }
 
-/// Reads the power and the colours of a light source.
+/// Reads the power, colour temperature and colour rendering of a light source. The flux stays 0; the caller sets it.
 fn lamps(source: Element) -> Result<Lamps> {
     let number = |path: &str, high: f64| Ok(source.number_at(path, 0.0, high)?.unwrap_or(0.0));
     Ok(Lamps {
@@ -174,8 +179,9 @@ fn lamps(source: Element) -> Result<Lamps> {
     })
 }
 
-/// Returns the luminaire of a photometry with other lamps. Their flux scales the intensities; a photometry that states
-/// no lamps is scaled by its own flux.
+/// Returns the luminaire with other lamps. The intensities are scaled by the flux of `lamps` divided by the rated flux
+/// of the luminaire's own lamps. If the luminaire states no lamp flux, the divisor is the flux of its distribution.
+/// Properties that are 0 in `lamps` keep their values in `luminaire`.
 fn scaled(mut luminaire: Luminaire, lamps: &Lamps) -> Luminaire {
     let measured = if luminaire.lamp_flux > 0.0 { luminaire.lamp_flux } else { luminaire.flux() };
     if lamps.flux > 0.0 && measured > 0.0 && (lamps.flux - measured).abs() >= WHOLE_LUMEN {

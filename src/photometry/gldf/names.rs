@@ -11,7 +11,7 @@ pub fn locale(element: Option<Element<'_>>) -> &str {
     found.unwrap_or(element).text()
 }
 
-/// All texts of an element with `Locale` children.
+/// Iterates over the texts of an element with `Locale` children: one text per language.
 pub fn locales(element: Option<Element<'_>>) -> impl Iterator<Item = &str> {
     element.into_iter().flat_map(|element| element.all("Locale")).map(Element::text)
 }

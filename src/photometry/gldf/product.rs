@@ -9,12 +9,12 @@ use super::names::{locale, locales};
 use super::shape::Shape;
 use crate::error::{Error, ErrorKind, Result};
 
-/// Reads the luminaire of one variant from a container held in memory. `variant` is its name, its id or its index from
-/// 0; without it, the first variant is read.
+/// Reads the luminaire of one variant from a container held in memory. `variant` is the variant's name, id or index
+/// from 0; with `None`, the first variant is read.
 ///
 /// # Errors
 /// `Format` if the container is malformed; `NotFound` if it has no such variant; `Unsupported` if the variant's
-/// photometry is elsewhere or of a kind that is not read.
+/// photometry lies outside the container or is of a kind that is not read.
 pub fn read(bytes: &[u8], variant: Option<&str>) -> Result<File> {
     let container = Container::new(bytes)?;
     let file = container.file("product.xml", xml::MAX_BYTES)?;
@@ -43,7 +43,8 @@ fn product(container: &Container, root: Element, variant: Option<&str>) -> Resul
     }
     let emitters = parts.len();
     let mut luminaire = sum(parts)?;
-    // The name of a variant overrules that of the product; "---" is no name.
+    // The name of a variant overrules the name of the product. A name without letters and digits, such as "---", counts
+    // as missing.
     let of_variant = name_of(chosen);
     let has_name = of_variant.contains(char::is_alphanumeric);
     luminaire.name = if has_name { of_variant } else { locale(product.find("ProductMetaData/Name")) }.into();
@@ -75,8 +76,8 @@ fn choose<'a>(all: &[Element<'a>], wanted: Option<&str>) -> Result<Element<'a>> 
     })
 }
 
-/// Returns the ids of the emitters that a variant refers to. A variant that refers to none has the emitter of the
-/// product, if there is only one.
+/// Returns the ids of the emitters that a variant refers to. If it refers to none and the product has a single emitter,
+/// returns the id of that emitter.
 fn emitters_of<'a>(variant: Element<'a>, definitions: Element<'a>) -> Result<Vec<&'a str>> {
     let ids = variant.find("Geometry").map_or(Ok(Vec::new()), references)?;
     let all = || definitions.find("Emitters").into_iter().flat_map(|list| list.all("Emitter"));
@@ -88,7 +89,8 @@ fn emitters_of<'a>(variant: Element<'a>, definitions: Element<'a>) -> Result<Vec
 
 /// Returns the ids of the emitters to which a geometry refers.
 fn references(geometry: Element<'_>) -> Result<Vec<&str>> {
-    // Simple and modelled geometry, if both are there, are two representations of one product.
+    // A simple geometry and a modelled geometry in one variant represent the same product, so do not add up their
+    // emitters: use those of the model, or else those of the simple geometry.
     let inner = geometry.find("GeometryReferences").unwrap_or(geometry);
     let simple = inner.all("SimpleGeometryReference").filter_map(|reference| reference.attribute("emitterId"));
     let of_model = inner.all("ModelGeometryReference").flat_map(|model| model.all("EmitterReference"));

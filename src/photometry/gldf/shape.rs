@@ -1,4 +1,5 @@
-//! The opening of an emitter: that of its photometry, turned with it, or the simple geometry of the variant.
+//! The opening of an emitter: either the opening of its photometry, turned together with the emitter, or the simple
+//! geometry of the variant.
 
 use super::super::luminaire::Luminaire;
 use super::super::opening::Opening;
@@ -8,16 +9,18 @@ use crate::error::{Error, ErrorKind, Result};
 /// Largest size in millimetres. [convention]
 const MAX_SIZE: f64 = 1e7;
 
-/// A simple geometry, in metres.
+/// The luminous opening that a simple geometry states, in metres.
 pub struct Shape {
-    /// Sizes along C = 0 and along C = 90, negative if they are diameters; `None` if it states no luminous face.
+    /// Sizes along C = 0 and along C = 90, negative if they are diameters; `None` if the geometry states no luminous
+    /// face.
     sides: Option<[f64; 2]>,
-    /// Luminous heights towards C = 0, 90, 180 and 270; `None` if it states none.
+    /// Luminous heights of the sides that face towards C = 0, 90, 180 and 270; `None` if the geometry states no
+    /// heights.
     heights: Option<[f64; 4]>,
 }
 
 impl Shape {
-    /// Reads the simple geometry to which the geometry of a variant refers; `None` if it refers to none.
+    /// Reads the simple geometry to which a variant's `Geometry` element refers; `None` if the element refers to none.
     pub fn of(definitions: Element, geometry: Element) -> Result<Option<Self>> {
         let inner = geometry.find("GeometryReferences").unwrap_or(geometry);
         let Some(reference) = inner.find("SimpleGeometryReference") else { return Ok(None) };
@@ -39,7 +42,8 @@ impl Shape {
         Ok(Some(Self { sides: (sides != [0.0; 2]).then_some(sides), heights: has_heights.then_some(heights) }))
     }
 
-    /// Gives a luminaire this opening. What the geometry does not state is that of the photometry.
+    /// Replaces the opening of a luminaire by this shape. Sizes or heights that the geometry does not state keep the
+    /// values of the photometry.
     fn replace(&self, luminaire: &mut Luminaire) {
         if let Some([x, y]) = self.sides {
             luminaire.size = [x, y, luminaire.size[2].abs()];
@@ -55,11 +59,12 @@ impl Shape {
     }
 }
 
-/// Returns the luminaire of an emitter, turned about its axis as the emitter demands, with the simple geometry of the
-/// variant if it has one.
+/// Returns the luminaire of an emitter, turned about its axis by the emitter's rotation. The simple geometry of the
+/// variant, if any, replaces the opening and is not turned.
 ///
 /// # Errors
-/// `Unsupported` for turns about other axes, and for turns after which the opening has no shape that a luminaire has.
+/// `Unsupported` for turns about other axes, and for turns of an opening that is not round by angles other than
+/// multiples of 90 degrees, unless a simple geometry replaces the opening.
 pub fn placed(light: Element, mut luminaire: Luminaire, shape: Option<&Shape>) -> Result<Luminaire> {
     let by = angle(light)?;
     turn(by, &mut luminaire);
@@ -94,13 +99,13 @@ fn angle(light: Element) -> Result<f64> {
     Ok((z + g0) % 360.0)
 }
 
-/// Turns the distribution of a luminaire about its axis.
+/// Turns the distribution of a luminaire about its axis by `by` degrees.
 fn turn(by: f64, luminaire: &mut Luminaire) {
     let n = luminaire.gammas.len();
     if by == 0.0 || luminaire.planes.len() == 1 {
         return;
     }
-    // Interpolate a plane at the turned zero, which the list of planes must have.
+    // The list of planes must contain C = 0. If no turned plane lies there, interpolate a plane for it.
     let zero: Vec<f64> = luminaire.gammas.iter().map(|gamma| luminaire.intensity(-by, *gamma)).collect();
     let mut planes: Vec<(f64, Vec<f64>)> = luminaire
         .planes
@@ -116,8 +121,8 @@ fn turn(by: f64, luminaire: &mut Luminaire) {
     luminaire.candela = planes.into_iter().flat_map(|(_, values)| values).collect();
 }
 
-/// Turns the opening of a luminaire about its axis. Returns whether the opening has a shape then that a luminaire can
-/// have: a round opening by any angle, and others by multiples of 90 degrees.
+/// Turns the opening of a luminaire about its axis by `by` degrees. Returns false if the luminaire cannot represent the
+/// turned opening: a round opening can be turned by any angle, any other opening only by multiples of 90 degrees.
 fn turn_opening(by: f64, luminaire: &mut Luminaire) -> bool {
     let is_round = match luminaire.opening() {
         None => true,

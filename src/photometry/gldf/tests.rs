@@ -11,7 +11,7 @@ use std::io::Write;
 
 const NOW: Moment = Moment(1_735_689_599);
 
-/// A ZIP archive of files.
+/// Returns a ZIP archive of the given files (name, content).
 fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut out = Vec::new();
     let mut archive = ZipArchiveWriter::new(&mut out);
@@ -35,7 +35,7 @@ fn name(text: &str) -> String {
     format!("<Name><Locale language=\"de\">{text}-de</Locale><Locale language=\"en\">{text}</Locale></Name>")
 }
 
-/// All kinds of emitters.
+/// Emitters of all kinds that are read, a sensor, and the emitters in `extra`.
 fn emitters(extra: &str) -> String {
     let fixed = |id: &str, photometry: &str, flux: u32, behaviour: &str| {
         format!(
@@ -58,7 +58,7 @@ fn emitters(extra: &str) -> String {
     parts.concat()
 }
 
-/// Variants of the product, each with some of the emitters.
+/// Variants of the product, each of which refers to some of the emitters; `extra` holds a further variant.
 fn variants(extra: &str) -> String {
     let reference = |id: &&str| {
         format!(
@@ -127,7 +127,7 @@ fn product(extra_emitter: &str, extra_variant: &str) -> String {
     .concat()
 }
 
-/// A container with this product and its files, of which each has a flux of 1000 lm.
+/// A container with the description `product` and its photometry files. Each of these files has a flux of 1000 lm.
 fn container(product: &str) -> Vec<u8> {
     let ldt = ldt::write(&lamp(1000.0)).unwrap();
     let ies = ies::write(&Luminaire { lamp_flux: 0.0, ..lamp(1000.0) }).unwrap();
@@ -156,12 +156,13 @@ fn variants_are_chosen_and_their_emitters_added_up() {
     for name in ["One", "One-de", "v-1", "0"] {
         assert_eq!(flux(Some(name)), one, "{name}");
     }
-    // The rated flux scales the photometry: twice for the second emitter. Lamps for emergencies and sensors are dark.
+    // The rated flux scales the intensities: the second emitter has twice the flux of its photometry. Emergency lights
+    // and sensors add no light.
     let two = flux(Some("Two"));
     assert_eq!(read(&bytes, Some("Two")).unwrap().emitters, 2);
     assert!((two.flux() / 3000.0 - 1.0).abs() < 1e-3, "{}", two.flux());
     assert_eq!((two.watts, two.temperature), (50.0, 3000.0));
-    // Three lamps of 400 lm, and channels of 100 lm and 200 lm.
+    // Variant "v-3" has three lamps of 400 lm. The variant with index 3 has channels of 100 lm and 200 lm.
     let three = flux(Some("v-3"));
     assert!(
         (three.flux() / 1200.0 - 1.0).abs() < 1e-3 && (three.lamp_flux - 1200.0).abs() < 1e-9 && three.watts == 32.0
@@ -169,7 +170,7 @@ fn variants_are_chosen_and_their_emitters_added_up() {
     let four = flux(Some("3"));
     assert!((four.flux() / 300.0 - 1.0).abs() < 1e-3 && four.watts == 33.0, "{}", four.flux());
     assert_eq!((four.temperature, four.rendering), (3000.0, 90.0));
-    // A variant without a name has that of the product.
+    // A variant without a name gets the name of the product.
     for name in ["", "<Name/>", "<Name><Locale language=\"en\">---</Locale></Name>"] {
         let geometry = "<Geometry><EmitterReference emitterId=\"same\"/></Geometry>";
         let unnamed = product("", &format!("<Variant id=\"v-6\">{name}{geometry}</Variant>"));
@@ -202,7 +203,8 @@ fn written_containers_are_read_back() {
     let sizes = [[0.0; 3], [-0.4, -0.4, 0.0], [-0.4, -0.4, 0.25], [0.6, 1.2, 0.0]];
     let lamps = sizes.map(|size| Luminaire::lambertian("panel", 3456.7, size));
     for l in lamps.into_iter().chain([uneven]) {
-        // The intensities pass through the EULUMDAT file, so they equal the intensities that this file gives.
+        // The container stores the intensities in a EULUMDAT file, so they equal the intensities that this file alone
+        // gives.
         let of_ldt = ldt::read(ldt::write(&l).unwrap().as_bytes()).unwrap();
         let again = read(&write(&l, NOW).unwrap(), None).unwrap();
         assert_eq!((again.luminaire, again.variants), (of_ldt, 1));
@@ -210,7 +212,7 @@ fn written_containers_are_read_back() {
     assert_eq!(write(&lamp(1.0), NOW).unwrap(), write(&lamp(1.0), NOW).unwrap());
 }
 
-/// A variant without geometry has the emitter of the product, if there is only one.
+/// A variant without geometry has the emitter of the product if the product has only one emitter.
 #[test]
 fn a_single_emitter_needs_no_reference() {
     let l = lamp(1000.0);
@@ -226,7 +228,8 @@ fn a_single_emitter_needs_no_reference() {
     assert_eq!(read_of(&two).unwrap_err().kind, ErrorKind::Unsupported);
 }
 
-/// The simple geometry replaces the opening of the photometry. The photometry's heights stay if it states none.
+/// The simple geometry replaces the opening of the photometry. If it states no luminous heights, the photometry's
+/// heights stay.
 #[test]
 fn simple_geometry_makes_the_opening() {
     let read_with = |l: &Luminaire, photometry: &Luminaire, change: &dyn Fn(&str) -> String| {
@@ -258,10 +261,10 @@ fn simple_geometry_makes_the_opening() {
     assert_eq!((found.size, found.side_heights), ([0.6, 1.2, 0.04], other.side_heights));
     let found = read_with(&round, &other, &no_heights);
     assert_eq!((found.size, found.side_heights), ([-0.4, -0.4, 0.04], None));
-    // A geometry without a luminous face leaves that of the photometry.
+    // If the geometry has no luminous face, the size and the heights of the photometry's opening stay.
     let found = read_with(&uneven, &other, &|text| no_heights(&without("RectangularEmitter")(text)));
     assert_eq!((found.size, found.side_heights), (other.size, other.side_heights));
-    // A sphere is written as a cylinder, as in its EULUMDAT file.
+    // A sphere is written as a cylinder, both in the geometry and in the EULUMDAT file.
     let sphere = with_size([-0.3, -0.3, -0.3], None);
     assert_eq!(read_with(&sphere, &sphere, &same).size, [-0.3, -0.3, 0.3]);
 }
@@ -282,7 +285,7 @@ fn emitters_are_turned_about_their_axis() {
         side_heights: Some([0.08, 0.02, 0.0, 0.04]),
         ..lamp(1000.0)
     };
-    // The description of a point has no simple geometry, which would not be turned.
+    // Take the description of a point luminaire: it has no simple geometry, which would replace the turned opening.
     let text = product_of(&write(&Luminaire { size: [0.0; 3], ..l.clone() }, NOW).unwrap());
     let with_text = |text: &str, l: &Luminaire, rotation: &str| {
         let text = text.replace("<FixedLightEmitter>", &format!("<FixedLightEmitter><Rotation>{rotation}</Rotation>"));
@@ -300,7 +303,7 @@ fn emitters_are_turned_about_their_axis() {
         (180.0, [0.6, 1.2, 0.08], [0.0, 0.04, 0.08, 0.02]),
         (270.0, [1.2, 0.6, 0.08], [0.02, 0.0, 0.04, 0.08]),
     ] {
-        // A distribution with one plane has an opening to turn, too.
+        // The opening is turned even if the distribution has only one plane, which does not change by turning.
         for l in [&l, &alike] {
             let found = by(l, angle).unwrap().luminaire;
             assert_eq!((found.size, found.side_heights), (size, Some(heights)), "{angle}");
@@ -309,7 +312,7 @@ fn emitters_are_turned_about_their_axis() {
             }
         }
     }
-    // Other angles turn only round openings, and those that the simple geometry replaces.
+    // By other angles, only round openings are turned, and luminaires whose opening the simple geometry replaces.
     let error = by(&l, 30.0).unwrap_err();
     let says = "turned by 30 degrees about the axis Z, and its opening of 0.6 x 1.2 x 0.08 m is not round";
     assert!(error.kind == ErrorKind::Unsupported && error.message.contains(says), "{error}");
@@ -367,7 +370,8 @@ fn wrong_descriptions_are_refused() {
     assert!(error.message.contains("65 emitters"), "{error}");
 }
 
-/// Many channels and emitters that refer to one photometry are refused before it is read for each.
+/// A file in which many channels or emitters refer to one photometry is refused before the photometry is read for each
+/// of them.
 #[test]
 fn floods_of_photometries_are_refused() {
     let good = product(
@@ -388,7 +392,7 @@ fn floods_of_photometries_are_refused() {
     let most = read(&container(&with_channels(63)), Some("Channels")).unwrap().luminaire;
     assert!((most.flux() / 6500.0 - 1.0).abs() < 1e-3, "{}", most.flux());
     assert_eq!(read(&container(&with_channels(31)), Some("twice")).unwrap().emitters, 2);
-    // One file with this number of intensities is read; two such files exceed the limit.
+    // The photometry file has so many intensities that it may be read once, but not twice.
     let large = Luminaire {
         planes: (0..2048).map(|i| f64::from(i) * 360.0 / 2048.0).collect(),
         gammas: (0..2048).map(|i| f64::from(i) * 180.0 / 2047.0).collect(),
@@ -422,10 +426,10 @@ fn damaged_and_hostile_archives_are_refused() {
         }
     }
     says(b"PK\x05\x06", "damaged");
-    // Two files of one name.
+    // Two files with the same name, apart from upper and lower case.
     let product = product("", "");
     says(&archive(&[("product.xml", product.as_bytes()), ("PRODUCT.XML", b"x")]), "two files with the name");
-    // A file that unpacks to more than is read, and one whose header lies about its size.
+    // A file that unpacks to more bytes than the limit, and a file whose header states a wrong size.
     let bomb = vec![b' '; super::super::xml::MAX_BYTES + 1];
     says(&archive(&[("product.xml", &bomb)]), "at most");
     let lie = |size: u64, crc: u32| {

@@ -12,10 +12,10 @@ use rawzip::{CompressionMethod, DataDescriptorOutput, ZipArchiveWriter};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::Write;
 
-/// Level of compression; 6 is the usual one. [convention]
+/// Compression level of the archive; 6 is the usual level. [convention]
 const LEVEL: u8 = 6;
 
-/// Writes a luminaire as a container with one variant; `now` is the date of the file.
+/// Writes a luminaire as a container with one variant. `now` becomes the date of the file.
 ///
 /// # Errors
 /// Those of [`Luminaire::check`].
@@ -38,7 +38,8 @@ pub fn write(luminaire: &Luminaire, now: Moment) -> Result<Vec<u8>> {
     Ok(out)
 }
 
-/// Returns an identifier in the form of a UUID (RFC 9562, version 8), which is always the same for the same luminaire.
+/// Returns an identifier in the form of a UUID (RFC 9562, version 8). It is a hash, so equal luminaires get equal
+/// identifiers. Different values of `salt` give different identifiers for one luminaire.
 fn identifier(luminaire: &Luminaire, photometry: &str, salt: u8) -> String {
     let half = |part: u8| {
         let mut hasher = DefaultHasher::new();
@@ -139,7 +140,8 @@ fn definitions(l: &Luminaire, out: &mut Writer) {
     }
 }
 
-/// Writes the opening as a box or a cylinder with its luminous face below and its luminous heights, in millimetres.
+/// Writes the opening as a box or a cylinder, in millimetres. Its lower face is luminous, and its sides have the
+/// luminous heights of the opening.
 fn geometry(l: &Luminaire, opening: &Opening, out: &mut Writer) {
     let [width, length, height] = l.bounds();
     let is_cylinder = match opening {
@@ -175,7 +177,8 @@ fn geometry(l: &Luminaire, opening: &Opening, out: &mut Writer) {
     out.end();
 }
 
-/// Writes sizes in whole millimetres, of which the schema allows no smaller than 1, and ends the element.
+/// Writes sizes as whole millimetres, then ends the innermost element. The schema allows no size below 1 mm, so smaller
+/// sizes become 1 mm.
 fn sizes(list: &[(&str, f64)], out: &mut Writer) {
     for (name, metres) in list {
         out.leaf(name, "", (metres * 1e3).round().max(1.0));

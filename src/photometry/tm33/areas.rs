@@ -1,9 +1,9 @@
 //! Emission areas: the luminous parts of the faces of a box, which TM-33 states by their sizes and by the offsets of
 //! their centres from the luminaire's centre.
 //!
-//! Each face is read as one area, the rectangle that bounds its areas of all emitters. A face whose areas are all
-//! circular is an ellipse: circular faces below or above make a vertical cylinder or a disc, a circular face towards
-//! C = 0 or 90 makes a horizontal cylinder, and three circular faces make an ellipsoid.
+//! Each face is read as one area: the rectangle that bounds the emission areas of all emitters on this face. If all
+//! areas of a face are circular, the face is an ellipse. A circular face below or above makes a vertical cylinder or a
+//! disc. A circular face towards C = 0 or 90 makes a horizontal cylinder. Three circular faces make an ellipsoid.
 
 use super::super::luminaire::Luminaire;
 use super::super::opening::Opening;
@@ -13,7 +13,8 @@ use crate::error::Result;
 /// Largest length in metres. [convention]
 const MAX_LENGTH: f64 = 1e4;
 
-/// A face of TM-33: the names of its element and of the elements for its areas, and its two directions.
+/// The names by which TM-33 states a face: of the face's element, of the element of an area, of the element that counts
+/// the areas, and of the two directions of the face.
 struct FaceElement {
     name: &'static str,
     area: &'static str,
@@ -25,7 +26,7 @@ const fn face(name: &'static str, area: &'static str, count: &'static str, sides
     FaceElement { name, area, count, sides }
 }
 
-/// The faces in the order of the file.
+/// The faces, in the order in which a file states them.
 const FACES: [FaceElement; 6] = [
     face("TopFace", "TopArea", "NumberTop", ["Length", "Width"]),
     face("BottomFace", "BottomArea", "NumberBottom", ["Length", "Width"]),
@@ -39,14 +40,15 @@ const BOTTOM: usize = 1;
 const C0: usize = 2;
 const C90: usize = 3;
 
-/// The rectangle or ellipse on a face: its sizes along the two directions of the face.
+/// The rectangle or ellipse on a face, with its sizes in metres along the two directions of the face.
 #[derive(Clone, Copy)]
 struct Area {
     sizes: [f64; 2],
     is_round: bool,
 }
 
-/// Reads the emission areas of emitters into the size of the luminaire's opening.
+/// Sets the size of a luminaire's opening, and the heights of its sides, from the emission areas of the emitters.
+/// Without emission areas, the luminaire stays unchanged.
 pub fn read(emitters: &[Element], luminaire: &mut Luminaire) -> Result<()> {
     let mut found = [None; 6];
     for (slot, face) in found.iter_mut().zip(&FACES) {
@@ -71,13 +73,13 @@ pub fn read(emitters: &[Element], luminaire: &mut Luminaire) -> Result<()> {
         [false, false, false] => [1.0; 3],
     };
     luminaire.size = [width * signs[0], length * signs[1], height * signs[2]];
-    // A side that has no width has no height of its own.
+    // The height of a side without width has no meaning, so it does not count as different.
     let differs = |i: usize| heights[i] != height && [length, width][i % 2] > 0.0;
     luminaire.side_heights = (round == [false; 3] && (0..4).any(differs)).then_some(heights);
     Ok(())
 }
 
-/// Returns the bounds of the areas on a face; `None` if it has none.
+/// Returns the rectangle that bounds all areas on a face; `None` if the face has no areas.
 fn bounds(emitters: &[Element], face: &FaceElement) -> Result<Option<Area>> {
     let mut range = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
     let mut is_round = true;
@@ -95,11 +97,12 @@ fn bounds(emitters: &[Element], face: &FaceElement) -> Result<Option<Area>> {
     Ok(sizes.iter().all(|size| size.is_finite()).then_some(Area { sizes, is_round }))
 }
 
-/// Writes the opening of a luminaire; nothing if it is a point.
+/// Writes the opening of a luminaire as emission areas; writes nothing if the luminaire is a point.
 pub fn write(luminaire: &Luminaire, out: &mut Writer) {
     let Some(opening) = luminaire.opening() else { return };
     let [width, length, height] = luminaire.bounds();
-    // Which faces are round: those below and above, towards C = 0, and towards C = 90.
+    // For three pairs of opposite faces, whether they are round: below and above, towards C = 0 and 180, and towards
+    // C = 90 and 270.
     let (round, heights) = match opening {
         Opening::Box { heights, .. } => ([false; 3], heights),
         Opening::Cylinder { axis, .. } => ([axis == 2, axis == 0, axis == 1], [height; 4]),
@@ -115,7 +118,8 @@ pub fn write(luminaire: &Luminaire, out: &mut Writer) {
             _ if i % 2 == C0 % 2 => ([length, heights[i - C0]], round[1]),
             _ => ([width, heights[i - C0]], round[2]),
         };
-        // A box has a luminous face below, whatever its distribution: its sides are measured from there.
+        // If the opening has a height, always write its lower face, even if no light goes down: the luminous heights of
+        // the sides are measured from this face.
         let is_lit = match i {
             TOP => is_up,
             BOTTOM => is_down || height > 0.0,
@@ -128,7 +132,8 @@ pub fn write(luminaire: &Luminaire, out: &mut Writer) {
         out.leaf(face.count, "", 1);
         out.begin(face.area, "");
         face.sides.iter().zip(sizes).for_each(|(side, size)| out.leaf(side, "", size));
-        // The strips on the sides begin at the face below; heights count upwards from the centre.
+        // The luminous strip on a side begins at the lower face; the offset is the height of the strip's centre above
+        // the luminaire's centre.
         let raised = if i < C0 { 0.0 } else { (sizes[1] - height) / 2.0 };
         out.leaf(&format!("{}Offset", face.sides[0]), "", 0);
         out.leaf(&format!("{}Offset", face.sides[1]), "", raised);

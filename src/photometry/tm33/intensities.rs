@@ -10,17 +10,17 @@ use crate::image::{try_vec, try_with_capacity};
 /// The largest intensity in candela. [convention]
 const MAX_INTENSITY: f64 = 1e12;
 
-/// A distribution in all planes of the circle.
+/// A luminous intensity distribution in C planes over the full circle, as in `Luminaire`.
 pub struct Distribution {
     pub planes: Vec<f64>,
     pub gammas: Vec<f64>,
     pub candela: Vec<f64>,
 }
 
-/// An intensity in the direction of a horizontal and a vertical angle.
+/// A horizontal and a vertical angle in degrees, and the intensity in candela in their direction.
 type Point = [f64; 3];
 
-/// Reads the intensities in `element`, which holds `IntData` or `IntensityData`.
+/// Reads the intensities in `element`, whose children are `IntData` or `IntensityData`.
 pub fn read(element: Element) -> Result<Distribution> {
     let points = points(element)?;
     let angles = |i: usize| {
@@ -74,7 +74,8 @@ fn points(element: Element) -> Result<Vec<Point>> {
     Ok(points)
 }
 
-/// Sorts the intensities into a grid, plane by plane. At γ = 0 and 180, where all planes meet, one value does for all.
+/// Sorts the intensities into a grid, plane by plane. All planes meet at γ = 0 and at γ = 180; a single intensity there
+/// holds for all planes.
 fn grid(element: Element, points: &[Point], planes: &[f64], gammas: &[f64]) -> Result<Vec<f64>> {
     let n = gammas.len();
     if planes.len() * n > MAX_VALUES {
@@ -109,19 +110,20 @@ fn grid(element: Element, points: &[Point], planes: &[f64], gammas: &[f64]) -> R
     }
 }
 
-/// Mirrors the planes from 270 through 0 to 90 about the plane through 90 and 270: they go from 90 to 270 then.
+/// Mirrors the planes from 270 through 0 to 90 about the plane through 90 and 270. The mirrored planes ascend from 90
+/// to 270.
 fn mirrored(planes: &[f64], values: &[f64], gammas: usize) -> (Vec<f64>, Vec<f64>) {
     let images = planes.iter().map(|c| (180.0 - c).rem_euclid(360.0)).zip(values.chunks(gammas));
     let mut images: Vec<(f64, &[f64])> = images.collect();
     images.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // The planes at 0 and 360 are one.
+    // Planes at 0 and at 360 are the same plane: keep one of them.
     images.dedup_by(|a, b| a.0 == b.0);
     (images.iter().map(|(c, _)| *c).collect(), images.iter().flat_map(|(_, values)| values.iter().copied()).collect())
 }
 
-/// Checks that the planes cover what the stated symmetry needs. The symmetry itself follows from their range, as in
-/// TM-33-18, which has no element for it. Returns whether the planes are the half from 270 through 0 to 90, which their
-/// range does not tell from the whole circle.
+/// Checks that the planes suffice for the symmetry that the file states. The symmetry itself follows from the range of
+/// the planes, because TM-33-18 has no element for it. This range cannot tell the half circle from 270 through 0 to 90
+/// from the full circle; returns true if the planes are that half circle.
 fn check_symmetry(element: Element, planes: &[f64]) -> Result<bool> {
     let stated = [element.text_at("Symm"), element.text_at("SymmType")].concat();
     let symmetry: String = stated.chars().filter(|c| c.is_ascii_alphanumeric()).collect();

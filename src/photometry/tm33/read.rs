@@ -20,7 +20,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
     read_file(bytes).map(|file| file.luminaire)
 }
 
-/// Reads a TM-33 file as [`read`] does, and counts its emitters.
+/// Reads a TM-33 file like [`read`], and also counts its emitters.
 ///
 /// # Errors
 /// Those of [`read`].
@@ -65,7 +65,8 @@ fn luminous(emitter: Element) -> Option<Element> {
     found.or(other)
 }
 
-/// Refuses photometry of other types than C, which elements at `paths` may state. A file that states none has type C.
+/// Returns an error if one of the elements at `paths` states another type of photometry than C. If none of them states
+/// a type, the photometry counts as type C.
 fn check_type(element: Element, paths: &[&str]) -> Result<()> {
     for found in paths.iter().filter_map(|path| element.find(path)) {
         let letters: String = found.text().chars().filter(char::is_ascii_alphanumeric).collect();
@@ -84,13 +85,13 @@ fn part(emitter: Element, element: Element) -> Result<Luminaire> {
     check_type(emitter, &["PhotometryType", "LuminousData/PhotometryType"])?;
     check_type(element, &["PhotometryType"])?;
     let found = intensities::read(element)?;
-    // As in LM-63, intensities hold for the full flux of the lamps, and the ballast may reduce it.
+    // As in LM-63, the file's intensities hold for the full flux of the lamps; the ballast factor may reduce them.
     let multiplier = element.number_at("Multiplier", 0.0, 1e9)?.unwrap_or(1.0);
     let ballast = emitter.number_at("BallastFactor", 0.0, 1e6)?.unwrap_or(1.0);
     let is_absolute = matches!(element.text_at("AbsolutePhotometry").to_ascii_lowercase().as_str(), "true" | "1");
     let quantity = emitter.number_at("Quantity", 0.0, 1e6)?.unwrap_or(1.0);
     let rated = emitter.number_at("RatedLumens", 0.0, 1e12)?.unwrap_or(0.0);
-    // The tools that write `IntensityData` take it over from EULUMDAT, per 1000 lumens of all lamps.
+    // The tools that write `IntensityData` copy the intensities of EULUMDAT: candela per 1000 lumens of all lamps.
     let is_of_tools = element.find("IntensityData").is_some();
     let lamp_flux = if is_of_tools { rated } else { rated * quantity };
     let per_lamps = if is_of_tools && !is_absolute && rated > 0.0 { rated / 1000.0 } else { 1.0 };

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 const NOW: Moment = Moment(1_735_689_599);
 
-/// A TM-33-18 file of a luminaire with emission areas; the `points` are its intensities.
+/// A TM-33-18 file of a luminaire with the intensities `points`. `extra` holds its emission areas.
 fn file(points: &str, extra: &str) -> String {
     format!(
         "<?xml version=\"1.0\"?>\n<IESTM33>\n<Version>1.0</Version>\n<Header>\n<Manufacturer>Works\n &amp; Co</Manufacturer>\n\
@@ -28,7 +28,7 @@ fn points(list: &[(f64, f64, f64)]) -> String {
     list.iter().map(|(h, v, value)| format!("<IntData h=\"{h}\" v=\"{v}\">{value}</IntData>\n")).collect()
 }
 
-/// A quarter of a distribution, in three planes.
+/// A quarter of a symmetric distribution, in three planes: (horizontal angle, vertical angle, intensity).
 const QUARTER: [(f64, f64, f64); 6] = [
     (0.0, 0.0, 100.0),
     (0.0, 90.0, 10.0),
@@ -48,13 +48,13 @@ fn header_emitter_and_symmetry_are_read() {
     for (c, want) in [(0.0, 10.0), (135.0, 20.0), (270.0, 30.0), (337.5, 15.0)] {
         assert!((l.intensity(c, 90.0) - want).abs() < 1e-12, "{c}");
     }
-    // The order of the intensities means nothing, and one value at the pole does for all planes.
+    // The intensities may be listed in any order. At a pole, one intensity suffices for all planes.
     let mut shuffled = QUARTER;
     shuffled.reverse();
     assert_eq!(read(file(&points(&shuffled), "").as_bytes()).unwrap(), l);
     let lean: Vec<_> = QUARTER.into_iter().filter(|(h, v, _)| *v > 0.0 || *h == 45.0).collect();
     assert_eq!(read(file(&points(&lean), "").as_bytes()).unwrap(), l);
-    // Factors, absolute photometry, and the encodings.
+    // Test the factors on the intensities, absolute photometry, and the text encodings.
     let absolute = file(&points(&QUARTER), "")
         .replace("ry>false", "ry>true")
         .replace("</AbsolutePhotometry>", "</AbsolutePhotometry><Multiplier>2.5</Multiplier>")
@@ -68,13 +68,14 @@ fn header_emitter_and_symmetry_are_read() {
     assert_eq!(read(&bytes).unwrap().name, "Lampe für Räume");
 }
 
-/// A Lambertian emitter has `π` times its intensity along the axis as flux. Files written from it keep the flux.
+/// The flux of a Lambertian emitter is `π` times its intensity along the axis. Writing the luminaire to a file and
+/// reading the file keeps the flux.
 #[test]
 fn the_flux_of_a_cosine_emitter_is_a_closed_form() {
     let list: Vec<_> = (0..=90).map(|i| (0.0, f64::from(i), 100.0 * f64::from(i).to_radians().cos())).collect();
     let l = read(file(&points(&list), "").as_bytes()).unwrap();
     assert!((l.flux() / (100.0 * PI) - 1.0).abs() < 1e-4, "{}", l.flux());
-    // Two emitters give twice the flux and the power, in any direction.
+    // Two equal emitters give twice the flux, twice the power, and twice the intensity in any direction.
     let text = file(&points(&list), "");
     let emitter = &text[text.find("<Emitter>").unwrap()..text.find("</IESTM33>").unwrap()];
     let two = read(text.replace("</IESTM33>", &format!("{emitter}</IESTM33>")).as_bytes()).unwrap();
@@ -83,7 +84,8 @@ fn the_flux_of_a_cosine_emitter_is_a_closed_form() {
     assert!((two.intensity(77.0, 33.0) - 2.0 * l.intensity(0.0, 33.0)).abs() < 1e-9);
 }
 
-/// A box of 0.6 x 1.2 x 0.1 m: two halves of its face below, and strips of different heights on two of its sides.
+/// A box of 0.6 x 1.2 x 0.1 m. Two areas form the two halves of its lower face, and two of its sides have luminous
+/// strips of different heights.
 #[test]
 fn emission_areas_make_the_opening() {
     let area = |name: &str, sizes: [(&str, f64); 2], offset: f64| {
@@ -104,8 +106,8 @@ fn emission_areas_make_the_opening() {
     assert_eq!(read(file(&points(&QUARTER), disc).as_bytes()).unwrap().size, [-0.4, -0.4, 0.0]);
 }
 
-/// The opening of two emitters bounds the areas of both: a panel below, and a panel above beside it, at other heights.
-/// Emitters without luminous intensities count for nothing.
+/// The opening of two emitters is the bounding box of the areas of both. Areas of emitters without luminous intensities
+/// are ignored.
 #[test]
 fn emission_areas_of_all_emitters_make_the_opening() {
     let areas = |face: &str, length: f64, offset: f64, more: &str| {
@@ -120,12 +122,13 @@ fn emission_areas_of_all_emitters_make_the_opening() {
         let dark = emitter.replace("LuminousData", "PhotonData").replace("0.3<", "9<");
         read(text.replace("</IESTM33>", &format!("{emitter}{dark}</IESTM33>")).as_bytes()).unwrap()
     };
-    // From -0.9 to -0.1 and from 0.3 to 0.9 on one face; each on its own face.
+    // On one face, the areas extend from -0.9 to -0.1 and from 0.3 to 0.9. Then one area lies on the lower face and one
+    // on the upper face.
     let [left, right] = [areas("Bottom", 0.8, -0.5, ""), areas("Bottom", 0.6, 0.6, "")];
     let both = with(&left, &right);
     assert!((both.size[1] - 1.8).abs() < 1e-12 && both.size[0] == 0.3 && both.size[2] == 0.0, "{:?}", both.size);
     assert_eq!(with(&left, &areas("Top", 1.5, 0.0, "")).size, [0.3, 1.5, 0.0]);
-    // Two discs in one place are a disc; a disc and a rectangle are a rectangle.
+    // Two equal discs in one place give a disc; a disc and a rectangle give a rectangle.
     let round = areas("Bottom", 0.3, 0.0, "<Circular>true</Circular>");
     assert_eq!(with(&round, &round).size, [-0.3, -0.3, 0.0]);
     assert_eq!(with(&round, &areas("Bottom", 0.3, 0.0, "")).size, [0.3, 0.3, 0.0]);
@@ -133,7 +136,8 @@ fn emission_areas_of_all_emitters_make_the_opening() {
     assert_eq!(with(&left, "<!-- none -->").size, [0.3, 0.8, 0.0]);
 }
 
-/// Half a distribution with the symmetry about the plane through 90 and 270, stored behind that plane or before it.
+/// A distribution that is symmetric about the plane through 90 and 270 is stored as one of its halves: from 90 to 270,
+/// or from 270 through 0 to 90.
 #[test]
 fn both_halves_about_c90_are_unfolded() {
     let symmetric = |values: &[(f64, f64)]| {
@@ -145,14 +149,15 @@ fn both_halves_about_c90_are_unfolded() {
     assert_eq!(want.planes, [0.0, 60.0, 90.0, 120.0, 180.0, 240.0, 270.0, 300.0]);
     let before = [(270.0, 7.0), (300.0, 6.0), (0.0, 1.0), (60.0, 3.0), (90.0, 4.0)];
     assert_eq!(symmetric(&before).unwrap(), want);
-    // The plane at 0 may be written as 360, or as both.
+    // The plane at 0 may also be stated at 360, or at both angles.
     let at_360 = before.map(|(c, v)| (if c == 0.0 { 360.0 } else { c }, v));
     assert_eq!(symmetric(&at_360).unwrap(), want);
     assert_eq!(symmetric(&[&before[..], &[(360.0, 1.0)]].concat()).unwrap(), want);
     for (c, intensity) in [(0.0, 1.0), (180.0, 1.0), (150.0, 2.0), (225.0, 4.75), (315.0, 4.75)] {
         assert!((want.intensity(c, 90.0) - intensity).abs() < 1e-12, "{c}");
     }
-    // The whole circle stays as it is, and a half without its ends is refused.
+    // If a file states the full circle, its planes stay as they are. A half without the planes at 90 and 270 is
+    // refused.
     let whole = symmetric(&[(0.0, 1.0), (90.0, 4.0), (180.0, 1.0), (270.0, 7.0)]).unwrap();
     assert_eq!(whole.planes, [0.0, 90.0, 180.0, 270.0]);
     let error = symmetric(&[(0.0, 1.0), (60.0, 3.0), (300.0, 6.0)]).unwrap_err();
@@ -162,7 +167,7 @@ fn both_halves_about_c90_are_unfolded() {
     );
 }
 
-/// Photometry of other types than C is refused wherever the file states the type.
+/// Photometry of a type other than C is refused, at whichever place the file states the type.
 #[test]
 fn only_photometry_of_type_c_is_read() {
     let good = file(&points(&QUARTER), "");
@@ -227,7 +232,7 @@ fn written_files_are_read_back() {
         let up = Luminaire { candela: up.candela.iter().rev().copied().collect(), lamp_flux: 0.0, ..up };
         assert_eq!(read(write(&up, NOW).unwrap().as_bytes()).unwrap(), up, "{size:?}");
     }
-    // Files of all other formats come back, too.
+    // Luminaires read from IES and EULUMDAT files also keep their data when they are written as TM-33 and read back.
     let l = uneven([0.6, 1.2, 0.0], None);
     let of_ies = ies::read(ies::write(&l).unwrap().as_bytes()).unwrap();
     let back = read(write(&of_ies, NOW).unwrap().as_bytes()).unwrap();
@@ -238,7 +243,7 @@ fn written_files_are_read_back() {
     assert!(write(&Luminaire { candela: vec![f64::NAN; 15], ..l }, NOW).is_err());
 }
 
-/// The other root and its names, which some tools write.
+/// Some tools write the root `LuminaireOpticalData` and other names of elements and attributes.
 #[test]
 fn files_of_other_tools_are_read() {
     let text = "<LuminaireOpticalData version=\"1.0\" xmlns=\"http://www.ies.org/tm-33\"><Header><CatalogNumber>N\
@@ -250,7 +255,7 @@ fn files_of_other_tools_are_read() {
     let l = read(text.as_bytes()).unwrap();
     assert_eq!((l.name.as_str(), l.watts, l.temperature, l.rendering), ("N", 30.0, 6500.0, 86.0));
     assert_eq!(l.intensity(200.0, 45.0), 25.0);
-    // With the flux of the lamps, of which there are two, intensities are per 1000 lm.
+    // If the file states the rated flux of its two lamps, the intensities are in candela per 1000 lm.
     let relative = text.replace("<Quantity>1</Quantity>", "<Quantity>2</Quantity><RatedLumens>3000</RatedLumens>");
     let l = read(relative.as_bytes()).unwrap();
     assert_eq!((l.intensity(200.0, 45.0), l.lamp_flux), (75.0, 3000.0));
@@ -300,7 +305,8 @@ fn malformed_files_are_refused_with_the_line() {
     }
 }
 
-/// Entities, floods of attributes and namespaces, and deep nests are refused or read in little memory.
+/// Entities, huge numbers of attributes and namespaces, and deeply nested elements are refused, or are read in little
+/// memory.
 #[test]
 fn hostile_files_are_refused() {
     let bomb = "<?xml version=\"1.0\"?><!DOCTYPE a [<!ENTITY a \"aaaaaaaaaa\"><!ENTITY b \"&a;&a;&a;\">]><IESTM33>&b;</IESTM33>";

@@ -6,8 +6,8 @@ use super::super::xml::Writer;
 use super::areas;
 use crate::error::Result;
 
-/// Writes a luminaire as a TM-33-23 file, with all planes of its distribution. What a luminaire does not state and the
-/// format demands (laboratory, report) is written as "none"; the date of the report is that of `now`.
+/// Writes a luminaire as a TM-33-23 file, with all planes of its distribution. Items that the format demands but a
+/// luminaire does not state (laboratory, report) are written as "none". The date of the report is that of `now`.
 ///
 /// # Errors
 /// Those of [`Luminaire::check`].
@@ -74,7 +74,7 @@ fn emitter(l: &Luminaire, out: &mut Writer) {
 
 fn intensities(l: &Luminaire, out: &mut Writer) {
     let is_round = l.planes.len() == 1;
-    // The plane at 360 degrees repeats the first: readers that take the symmetry from the range of angles need it.
+    // Repeat the first plane at 360 degrees, for readers that derive the symmetry from the range of the angles.
     let planes = l.planes.iter().copied().chain((!is_round).then_some(360.0));
     let n = l.gammas.len();
     let count = if is_round { 1 } else { l.planes.len() + 1 };

@@ -23,8 +23,8 @@ const MIN_INCIDENCE: f64 = 0.05;
 /// Cost of the assumption that all lamps are elongated by the same ratio in the same direction. The cost is needed
 /// because this assumption adds two parameters, and most lamps are as long as they are wide. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
-/// Limit of a shape's squared deviation, divided by the variance of the deviation. Beyond it the cost grows more
-/// slowly, because the shape is probably of another kind. [convention]
+/// Limit of the ratio of a shape's squared deviation to the variance of the deviation. Beyond this limit, the cost of
+/// the shape grows more slowly, because the shape is probably of another kind. [convention]
 const OUTLIER: f64 = 4.0;
 /// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention]
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
@@ -45,8 +45,8 @@ const MIN_SEMIAXIS: f64 = 0.5;
 pub struct Shape {
     /// Centre of the region relative to the principal point, in pixels of the photo that an ideal lens would take.
     centre: DVec2,
-    /// For each width in [`BLOOMS`], the covariance of the region's positions in that photo, after bloom of this width
-    /// is removed from the region in the photo.
+    /// For each width in [`BLOOMS`], the covariance of the positions of the region's pixels in the photo that an ideal
+    /// lens would take. Bloom of this width was first removed from the region in the actual photo.
     covariances: [DMat2; BLOOMS.len()],
     /// Standard deviation of the `log_size` (`size_error`) and of the `stretch` (`stretch_error`) of the region's
     /// [`Form`].

@@ -30,7 +30,8 @@ fn on_ceiling(camera: &Perspective, pixel: DVec2) -> Option<DVec2> {
     Some(on_plane(camera, pixel)).filter(|q| q.length() < 4.0)
 }
 
-/// The same for the plane of the ceiling; not finite or huge if the pixel shows none of it.
+/// Like [`on_ceiling`], but on the unbounded plane of the ceiling. If the pixel does not show this plane, the result is
+/// NaN, infinite or huge.
 fn on_plane(camera: &Perspective, pixel: DVec2) -> DVec2 {
     let ray = camera.axes.transpose() * camera.ray(pixel);
     DVec2::new(ray.x, ray.z) / (-ray.y).max(0.0)
@@ -80,8 +81,8 @@ fn ends_of_segments_on_a_lens_give_exact_vanishing_points() {
     assert!((0..3).map(error).fold(0.0, f64::max) > 5e-3 && view.undone == 0.0);
 }
 
-/// The root mean square distance, in pixels, of a dark line along the columns of an image from a straight line; the
-/// largest of all lines.
+/// How crooked the dark lines along the columns of an image are. Measures the root mean square distance, in pixels, of
+/// each line from the straight line that fits it best, and returns the largest one.
 fn crookedness(flat: &Unwarped) -> f64 {
     let (width, height) = (flat.image.width, flat.image.height);
     let value = |x: usize, y: usize| f64::from(flat.image.pixel(x, y)[0]);
@@ -141,7 +142,7 @@ fn a_grid_on_the_ceiling_comes_back_straight() {
         // The corners are pixels of the photo.
         let corner_pixel = flat.to_photo.apply(DVec2::new(w, h));
         assert_eq!(flat.corners[2], corner_pixel);
-        // And so do the lines look.
+        // The dark lines must be straight in the unwarped image as well.
         let (straight, crooked) = (crookedness(&flat), crookedness(&unwarped(0.0)));
         println!("{corner}: {straight:.3} px, not undone {crooked:.3} px");
         assert!(straight < 0.3, "{corner}: {straight}");

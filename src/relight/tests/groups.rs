@@ -46,7 +46,7 @@ fn lamps_sum_to_the_whole_and_mirrored_lamps_respond_alike() {
     let params = Params { paths: 1 << 15, target_error: 0.0, quantity: Quantity::Incident, ..Params::default() };
     let input = Input { world: &world, emitter: 1, target_triangles: FLOOR, target: Vec3::ONE };
     let whole = Pool::new(2).unwrap().run(|| run(&input, &params, Monitor::default().job()).unwrap());
-    // Both results come from the same paths, sorted into different bins.
+    // The response to all lamps and the response of `run` come from the same paths, sorted into different bins.
     let all = responses.all(0).mean;
     assert!((all - whole.response).abs().max_element() < 1e-9 * all.x, "{all} {}", whole.response);
     for lamp in 1..4 {
@@ -96,8 +96,8 @@ fn groups_of_equal_or_very_different_strength_and_dark_goals() {
     // A single goal leaves the distribution over the lamps open; the regularisation makes all powers equal.
     assert!(x.iter().all(|v| (v / x[0] - 1.0).abs() < 1e-6), "{x:?}");
     assert!((solution.outcomes[0].achieved.x / 20.0 - 1.0).abs() < 1e-6);
-    // The faint lamp would have to be 1e12 times as strong to light the second desk. The solution stays finite, and a
-    // missed goal is reported.
+    // The faint lamp would have to be 1e12 times as strong to light the second desk. The solution stays finite, and the
+    // goal of this desk is reported as missed.
     let ask = [goal(desk(0.9, 0.9), Vec3::splat(20.0)), goal(desk(3.1, 3.1), Vec3::splat(90.0))];
     let (faint, pair) = lamp_room(&[[3, 3], [12, 12]], &[1.0, 1e-12]);
     let most = GroupParams { max_scale: vec![f64::INFINITY, 2.0], ..GroupParams::default() };
@@ -223,7 +223,7 @@ fn lux_are_luminance() {
     assert_eq!(powers(&responses, &[lux], &free).unwrap_err().kind, ErrorKind::InvalidArgument);
 }
 
-/// Two lamps above two desks: limits are satisfied if possible, with the least light.
+/// Two lamps above two desks: if limits can be satisfied, the solution satisfies them with the least light.
 #[test]
 fn limits_count_on_one_side() {
     let (world, lamps) = lamp_room(&[[3, 3], [12, 12]], &[1.0; 2]);

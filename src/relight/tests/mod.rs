@@ -46,7 +46,7 @@ fn solve(scene: &Scene, target: Vec3, params: &Params) -> Result<Solution> {
     let pool = Pool::new(2).unwrap();
     let monitor = Monitor::default();
     let world = World::build(Arc::new(scene.clone()), monitor.job()).unwrap();
-    // The whole ceiling emits; the floor is the target, as it has no lamps to exclude.
+    // The whole ceiling emits. The floor is the target, because it has no lamps, which a target excludes.
     let input = Input { world: &world, emitter: 1, target_triangles: &[(0, 0), (0, 1)], target };
     pool.run(|| run(&input, params, monitor.job()))
 }
@@ -139,7 +139,7 @@ fn a_limit_binds_only_where_it_is_broken() {
         let constraint = [constraint, Constraint::Exactly, Constraint::Exactly];
         solve(&scene, target, &Params { seed: 99, constraint, ..params.clone() }).unwrap()
     };
-    // The true red is brighter than its limit.
+    // The lower limit of red is 0.6 times the red light of lamps of unchanged colour, so the limit changes nothing.
     let free = least(truth * Vec3::new(0.6, 1.0, 1.0), Constraint::AtLeast);
     for c in 0..3 {
         let allowed = 2.0 * (free.half_width[c] + 0.005 * 100.0);

@@ -1,21 +1,21 @@
 //! The choice, at each pixel, of the candidate with the least estimated error. The candidates are the unfiltered
 //! picture and the result of each pass of the filter.
 //!
-//! Let A and B be the values of the two halves at a pixel before filtering, and a and b the values after it.
+//! Let A and B be the values of the two halves at a pixel before filtering, and a and b their values after filtering.
 //!
 //! - The filter changes each half by its bias plus noise. The noise of the halves is independent, so the expectation of
 //!   (a - A)(b - B) is the squared bias.
 //! - (a - b)² / 4 is an estimate of the variance of the filtered picture (a + b) / 2. It includes correlations between
 //!   pixels.
-//! - The sum of both, averaged over neighbouring pixels, estimates the squared error of a pass. The squared error of
-//!   the unfiltered picture is its variance alone.
+//! - The sum of these two terms, averaged over neighbouring pixels, estimates the squared error of a pass. The squared
+//!   error of the unfiltered picture is its variance alone.
 //!
 //! Rousselle et al. 2012 use two halves too. Stein's unbiased risk estimate, as used by Li et al. 2012, would need the
 //! covariance of all pixels.
 //!
-//! The averages for pixels at edges of surfaces use only such pixels, and the averages for other pixels only other
-//! pixels (`Classes`). Otherwise, the large errors at the outlines of lamps would decide the choice for all pixels
-//! nearby.
+//! The pixels at edges of surfaces and the remaining pixels form two classes (`Classes`). At each pixel, the errors are
+//! averaged only over neighbours of the pixel's own class. Otherwise, the large errors at the outlines of lamps would
+//! decide the choice for all pixels nearby.
 
 use super::light::{LIGHT, Light};
 use super::planes::{Classes, Planes};
@@ -31,8 +31,8 @@ const CHOICE_RADIUS: usize = 4;
 const MIN_LIGHT: f32 = 0.1;
 
 /// Returns both halves of the filtered light. The candidates are the unfiltered light and the result of each pass;
-/// every pixel chooses the candidate with the least estimated error. The result at a pixel is a mean of the candidates,
-/// each weighted by the share of the pixels around that choose it.
+/// every pixel chooses the candidate with the least estimated error. The result at a pixel is a weighted mean of the
+/// candidates. The weight of a candidate is the share of the surrounding pixels that choose this candidate.
 pub fn choose(light: &Light, passes: &[Planes], classes: &Classes, job: Job) -> Result<Planes> {
     let raw = &light.halves;
     let (width, height) = (raw.width, raw.height);

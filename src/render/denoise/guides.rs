@@ -10,8 +10,8 @@ use crate::simd::widest;
 
 /// Channels of the guide images, three each: albedo, normal, position.
 pub const GUIDES: usize = 9;
-/// The channel after the guides: the factor by which a pixel multiplies its distances to its neighbours (see
-/// [`scales`]).
+/// Index of the channel after the guides. For each pixel, it holds the factor by which the pixel's distances to its
+/// neighbours are multiplied (see [`scales`]).
 const SCALE: usize = GUIDES;
 /// Squared difference in albedo, summed over the channels, that counts as a distance of 1. [bench filter]
 const ALBEDO: f32 = 0.02;
@@ -41,7 +41,7 @@ impl Guides {
         let scales = Planes::from_rows_with([width, height, 1], job, new_scratch, |(nearest, distance), y, row| {
             scales(&planes, y, nearest, distance, row);
             // Where the variance is unknown, the statistical test cannot separate the surfaces at an edge; only the
-            // guides can. Leave their distances unchanged there, with a factor of 1.
+            // guides can. Set the factor to 1 there, which leaves the distances in the guides unchanged.
             (0..width).filter(|&x| !input.is_known(x, y)).for_each(|x| row[x] = 1.0);
         })?;
         for y in 0..height {
@@ -65,8 +65,8 @@ impl Guides {
         })
     }
 
-    /// Computes the distances of the pixels of a row to their neighbours at one offset (`at`), multiplied by the
-    /// factors of the pixels.
+    /// Computes the distances in the guides between the pixels of row `y` and their neighbours at one offset (`at`).
+    /// Each distance is multiplied by the factor of its pixel ([`scales`]).
     pub fn distances(&self, y: usize, at: &Shift, out: &mut [f32]) {
         distances(self.0.part(y, 0, at.from, at.span), self.0.part(at.row, 0, at.there, at.span), out);
         out.iter_mut().zip(&self.0.row(y, SCALE)[at.from..]).for_each(|(out, scale)| *out *= scale);

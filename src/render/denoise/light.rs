@@ -10,11 +10,11 @@ use glam::Vec3;
 
 /// Channels of the light: red, green and blue of the first half, then of the second.
 pub const LIGHT: usize = 6;
-/// Colours are divided by the albedo, or by this value if it is larger, because lamps and black surfaces have an albedo
-/// of 0. [bench filter]
+/// Colours are divided by the albedo, or by this value where the albedo is smaller, because lamps and black surfaces
+/// have an albedo of 0. [bench filter]
 const MIN_ALBEDO: f32 = 0.02;
 /// Each half of a pixel has the weight `1 / (1 + CONFIDENCE_FALLOFF * r)`. Here r is the variance of this half at the
-/// pixel, divided by the mean variance of the same half in the pixels around. [bench filter]
+/// pixel, divided by the mean variance of the same half in the surrounding pixels. [bench filter]
 const CONFIDENCE_FALLOFF: f32 = 0.3;
 /// Radius, in pixels, of the neighbourhood over which the variance of a half is averaged to compute its weight.
 /// [bench filter]

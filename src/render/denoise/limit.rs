@@ -1,5 +1,5 @@
-//! The limit of the filter's changes. A pixel has two values, one from each half of its paths. The filter moves neither
-//! by more than two of its standard errors.
+//! The limit of the filter's changes. A pixel has two values, one from each half of its paths. The filter changes
+//! neither value by more than two standard errors of the value.
 //!
 //! The choice between the passes rests on errors that are averaged over a neighbourhood. On average, the chosen pass is
 //! better than the unfiltered picture, but a single pixel can differ from the pixels around. For example, the outline
@@ -20,8 +20,8 @@ const LIMIT: f32 = 2.0;
 /// variance of its own. [bench filter]
 const RADIUS: usize = 1;
 
-/// Returns, for the value of each half of the paths, by how much the filter may change it: per channel, in units of the
-/// picture, infinite where a variance is unknown.
+/// Returns, for each pixel, the largest change that the filter may make to the value of a half of the paths: per
+/// channel, in units of the picture, infinite where a variance is unknown. The limit is the same for both halves.
 pub fn limits(input: &Input, job: Job) -> Result<Planes> {
     let [one, other] = input.halves;
     let own = Planes::from_rows([one.width, one.height, 3], job.part(0.0, 0.3), |y, row| {

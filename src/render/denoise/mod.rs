@@ -11,15 +11,15 @@
 //!    Carlo denoising"). Each pass fits a plane to the neighbours instead of taking their mean (`regression`), so that
 //!    gradients survive. Its result is the pilot of the next pass. The variances follow from the difference between the
 //!    two halves, which includes the correlation between pixels that share paths.
-//! 4. Each pixel takes the result of the pass with the least estimated error, or stays as it is (`choice`). If all
-//!    variances are 0, the image is unchanged.
-//! 5. A pixel has two values, one from each half of its paths; neither moves by more than two of its standard errors
-//!    (`limit`).
+//! 4. Each pixel takes the result of the pass with the least estimated error, or stays as it is (`choice`). If the
+//!    halves are equal and all variances are 0, the image is unchanged.
+//! 5. A pixel has two values, one from each half of its paths. The filter changes neither value by more than two
+//!    standard errors of the value (`limit`).
 //! 6. The error, the bias and the interval of each pixel are estimated from the halves (`statement`).
 //!
-//! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, where they differ
-//! from their surroundings by no more than about the standard error. The stated error includes this bias. Final images
-//! are rendered without the filter.
+//! The filter is biased: it blurs features that the guide images do not show, such as soft shadows, wherever the
+//! feature differs from its surroundings by no more than about the standard error. The stated error includes this bias.
+//! Final images are rendered without the filter.
 //!
 //! Not modelled: motion; reflections, which are smoothed as if they were light on the mirror's surface; textures seen
 //! in mirrors, which are blurred.
@@ -70,8 +70,8 @@ pub struct Output {
     /// mean of the image. Infinite if a variance is unknown.
     pub error: f64,
     /// Estimated bias, relative to the mean of the image: the root mean square, over squares of 8 × 8 pixels, of the
-    /// mean bias in a square. The mean square is estimated without bias, but counts as 0 if it is negative. Blur within
-    /// a square of pixels goes undetected.
+    /// mean bias in a square. The mean square is an unbiased estimate, which noise can make negative; it then counts as
+    /// 0. Blur within a square of pixels goes undetected.
     pub bias: f64,
 }
 
@@ -160,8 +160,9 @@ struct Change<'a> {
 }
 
 impl Change<'_> {
-    /// Returns a half of the picture, filtered: the change of the light, times albedo and unit and clamped to the
-    /// limit, is added to the unfiltered half. A pixel whose light is unchanged therefore keeps its exact value.
+    /// Returns the filtered picture of half number `number`, from its unfiltered picture `half`. The change of the
+    /// light is multiplied by the albedo and the unit, clamped to the limit, and added to the unfiltered half. A pixel
+    /// whose light is unchanged therefore keeps its exact value.
     fn of(&self, half: &Image, number: usize, job: Job) -> Result<Image> {
         let Self { light, chosen, limits } = *self;
         let width = half.width;

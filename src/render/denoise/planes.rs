@@ -92,7 +92,7 @@ pub struct Classes<'a> {
 }
 
 impl Classes<'_> {
-    /// Averages each channel around each pixel over the pixels of the same class, with the weights of
+    /// Averages each channel over the neighbours of each pixel that are of the pixel's own class, with the weights of
     /// [`Planes::smoothed`].
     pub fn smoothed(&self, image: &Planes, radius: usize, job: Job) -> Result<Planes> {
         let Planes { width, height, channels, .. } = *image;

@@ -1,6 +1,7 @@
 //! One pass of the filter: for each pixel, fits a plane `value = p + q x + r y` to the neighbours by weighted least
-//! squares, where (x, y) is the offset of a neighbour. The filtered value is p (first-order regression, as by Bitterli
-//! et al. 2016, here over the pixel coordinates). The pass without a pilot takes the weighted mean instead.
+//! squares, where (x, y) is the offset of a neighbour from the pixel, in taps. The filtered value is p (first-order
+//! regression, as by Bitterli et al. 2016, here over the pixel coordinates). The pass without a pilot takes the
+//! weighted mean instead.
 //!
 //! A neighbour's weight is the product of four factors:
 //!
@@ -26,8 +27,8 @@ const SIGMA: f32 = 2.0;
 /// Where the neighbours are few, the result then approaches the weighted mean; where they lie on one line, the slope
 /// across the line approaches 0. [bench filter]
 const RIDGE: f32 = 0.02;
-/// Eliminating the slopes from the normal equations leaves one equation for p. If its coefficient is at most this share
-/// of the sum of weights, the weighted mean is taken instead. [rounding]
+/// Eliminating the slopes from the normal equations leaves one equation for p. If the coefficient of p in this equation
+/// is at most this share of the sum of weights, the weighted mean is taken instead of p. [rounding]
 const MIN_LEFT: f32 = 0.02;
 /// Relative difference that rounding alone may cause between two pilot values. [rounding]
 const EQUAL: f32 = 1e-6;
@@ -37,7 +38,7 @@ const SUMS: usize = 15;
 
 /// The data of one pass.
 pub struct FilterPass<'a> {
-    /// The light of both halves; the values that are combined.
+    /// The values to which the planes are fitted: the light of both halves.
     pub light: &'a Planes,
     /// The pilot: an estimate of the light with less noise, whose pixels are compared by the statistical test. `None`
     /// skips the test and the fit of slopes.
@@ -52,7 +53,7 @@ pub struct FilterPass<'a> {
 #[derive(Clone, Copy)]
 pub struct PilotImage<'a> {
     pub light: &'a Planes,
-    /// Variance of the pilot, per channel; equal for both halves.
+    /// Variance of the pilot, per channel; one value serves both halves.
     pub variance: &'a Planes,
     /// The weight of a neighbour is divided by e if the squared difference of the two pilot values is this multiple of
     /// the sum of their variances.

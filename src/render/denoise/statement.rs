@@ -6,8 +6,8 @@
 //!
 //! - Both halves are filtered by the same guides, which come from the paths of both. At edges and in textures, the
 //!   noise of the guides follows the noise of the halves.
-//! - Both halves are tested by the same variance, which comes from their difference.
-//! - Both halves take the same pass, whose estimated error is the least of several noisy ones.
+//! - The statistical test uses the same variance for both halves; the variance comes from the difference of the halves.
+//! - Both halves take the result of the same pass: the one with the least of several noisy error estimates.
 //! - Light that comes by rare paths is usually missing from both halves.
 //!
 //! The filtered halves then agree more than independent halves would. The missing error is taken as a share of the
@@ -28,8 +28,8 @@ const SQUARE: usize = 8;
 /// Radius in pixels of the neighbourhood over which squared errors are averaged to compute a pixel's interval.
 /// [bench filter]
 const INTERVAL_RADIUS: usize = 8;
-/// Error common to both halves, as a share of the variance that the filter removes: for pixels within surfaces, and for
-/// pixels at edges of surfaces. [bench filter]
+/// Squared error that is common to both halves, as a share of the variance that the filter removes: for pixels within
+/// surfaces, and for pixels at edges of surfaces. [bench filter]
 const SHARED: [f32; 2] = [0.045, 0.3];
 
 /// The statements of the filter about its result; `Output` describes the fields.
@@ -82,8 +82,8 @@ fn squared_error(errors: &Planes) -> f64 {
 }
 
 /// Returns six channels: estimates of the squared bias of each pixel (R, G, B), then of the variance of the mean of the
-/// two filtered halves plus the error common to both ([`SHARED`]; R, G, B). The estimates are accurate only as means
-/// over many pixels.
+/// two filtered halves plus the squared error common to both halves ([`SHARED`]; R, G, B). The estimates are accurate
+/// only as means over many pixels.
 fn squared_errors(classes: &Classes, before: [&Image; 2], after: [&Image; 2], job: Job) -> Result<Planes> {
     let Image { width, height, .. } = *before[0];
     Planes::from_rows([width, height, 6], job, |y, row| {

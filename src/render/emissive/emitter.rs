@@ -24,8 +24,8 @@ pub struct Emitter {
 }
 
 impl Emitter {
-    /// Returns `None` for a triangle that does not emit or has no area. `id` is the index of the triangle among all
-    /// triangles of the scene; `first` holds the id of each mesh's first triangle.
+    /// Builds the emitter of a triangle of a mesh; `None` if the triangle does not emit or has no area. `id` is the
+    /// index of the triangle among all triangles of the scene; `first` holds the id of each mesh's first triangle.
     pub(super) fn new(scene: &Scene, facet: &Facet, id: u32, first: &[u32]) -> Option<Self> {
         let (mesh, triangle) = (facet.mesh, id - first[facet.mesh as usize]);
         let m = &scene.meshes[mesh as usize];
@@ -61,8 +61,9 @@ impl Emitter {
         })
     }
 
-    /// Returns a triangle of a luminaire's patch; `None` if it has no area. `mesh` is the number of the luminaire's
-    /// mesh, and `triangle` the index of the triangle within it.
+    /// Builds the emitter of a triangle of a luminaire's patch; `None` if the triangle has no area. `mesh` is the index
+    /// of the luminaire's mesh, `triangle` the index of the triangle within this mesh, and `id` its index among all
+    /// triangles.
     pub(super) fn of_patch(facet: &Facet, [mesh, triangle, id]: [u32; 3], patch: u32) -> Option<Self> {
         let corners = facet.corners();
         let [a, b, c] = corners.map(|p| p.as_dvec3());

@@ -70,7 +70,7 @@ impl FacePatches {
         self.of(patch).emission.radiance(direction)
     }
 
-    /// Returns the index of the luminaire among the lights of the scene.
+    /// Returns the index, among the lights of the scene, of the luminaire that a patch belongs to.
     #[inline]
     pub fn light(&self, patch: u32) -> u32 {
         self.of(patch).light

@@ -51,8 +51,8 @@ pub struct EmissiveTile {
 }
 
 impl Tiling {
-    /// Returns `None` if the texture coordinates have no area, lie within a single texel, span too many texels, or lie
-    /// too far from 0.
+    /// Builds the tiling of an emitter; `None` if the emitter's texture coordinates have no area, lie within a single
+    /// texel, span too many texels, or lie too far from 0.
     pub fn new(emitter: &Emitter, texture: &Texture) -> Option<Self> {
         let triangle = emitter.texels(texture);
         let [a, b, c] = triangle;
@@ -107,7 +107,8 @@ impl Tiling {
         is_inside.then_some([first.x as usize, first.y as usize])
     }
 
-    /// Builds a tile of the emitter with this index, and the bounds of its light. A dark tile has zero intensity.
+    /// Builds one tile of the emitter `emitter`, whose index is `index`, and the bounds of the tile's light. The
+    /// intensity of a dark tile is 0.
     pub fn tile(
         &self,
         index: u32,
@@ -195,8 +196,8 @@ impl Tiling {
         (b / b.element_sum().max(1.0)).as_vec2()
     }
 
-    /// Returns the mean emission of the texels in the triangle's bounding box. It is positive if any part of the
-    /// triangle emits.
+    /// Returns the mean emission of the texels in the bounding box of the triangle's texture coordinates, in cd/m²,
+    /// averaged over the channels. The mean is positive if any part of the triangle emits.
     pub fn mean_around(emitter: &Emitter, texture: &Texture) -> f64 {
         let [a, b, c] = emitter.texels(texture);
         let (low, high) = (a.min(b).min(c).floor(), a.max(b).max(c).floor());

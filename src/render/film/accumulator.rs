@@ -22,8 +22,8 @@ use std::time::Instant;
 /// The sums over all paths so far, for every pixel of the image.
 pub struct Accumulator<'a> {
     pub(super) world: &'a World,
-    /// A copy of `world`, in which the paths are traced. After each pass, it is updated by what the paths have shown:
-    /// which lights reach the surfaces in view.
+    /// A copy of `world`, in which the paths are traced. After each pass, the copy learns from the traced paths which
+    /// lights reach the surfaces in view.
     pub(super) learning: World,
     pub(super) camera_rays: CameraRays,
     pub(super) seed: u64,
@@ -107,9 +107,9 @@ impl<'a> Accumulator<'a> {
         &self.pixels[tile * AREA + i]
     }
 
-    /// Returns the pixel whose value the image shows at (`x`, `y`): this pixel itself, if it has paths. Otherwise the
-    /// low bits of both coordinates are cleared one by one until a pixel has paths. This finds a pixel of a coarse
-    /// pass, up and to the left.
+    /// Returns the pixel whose value the image shows at (`x`, `y`): this pixel itself, if it has paths. Otherwise, the
+    /// low bits of `x` and `y` are cleared one by one until (`x`, `y`) is a pixel that has paths: a pixel of a coarse
+    /// pass, above or to the left.
     pub(super) fn nearest(&self, x: usize, y: usize) -> (usize, usize) {
         let (mut x, mut y, mut mask) = (x, y, !0);
         while self.pixel(x, y).count() == 0 && (x, y) != (0, 0) {
@@ -151,7 +151,8 @@ impl<'a> Accumulator<'a> {
         self.image(3, job, |x, y, out| self.pixel(x, y).variance().as_vec3().write_to_slice(out))
     }
 
-    /// Returns two images, each from one half of the paths. Both are equal at pixels that have a single path.
+    /// Returns two images, each computed from one half of the paths. The two images are equal at pixels that have a
+    /// single path.
     pub fn halves(&self, job: Job) -> Result<[Image; 2]> {
         self.pair(job, Pixel::halves)
     }

@@ -4,8 +4,9 @@
 //!    until every pixel has a path.
 //! 2. The next passes give every pixel a few paths, then twice as many, and so on, since sample points are stratified
 //!    best at powers of two.
-//! 3. If there is an error target, the passes from [`MIN_UNIFORM_PATHS`] paths per pixel on are adaptive. Each of them
-//!    doubles the paths of the tiles with the largest ratio of required to present paths.
+//! 3. If there is an error target, the passes from [`MIN_UNIFORM_PATHS`] paths per pixel on are adaptive. Each adaptive
+//!    pass doubles the paths of some tiles: those whose required number of paths is the largest multiple of their
+//!    present number.
 //!
 //! If the target limits the error of the whole image, the required number of paths of a tile is proportional to the
 //! standard deviation of its paths (Neyman 1934). For a target on the relative error, each pixel's deviation is first
@@ -37,7 +38,7 @@ const FIRST_PASS_PATHS: u32 = 4;
 pub const MIN_UNIFORM_PATHS: u32 = 16;
 /// Limit on the paths per pixel of a tile, as a multiple of `samples`. Without a limit, light that few paths find (a
 /// caustic, or the glossy reflection of a small lamp) would take all paths. At the limit, the error of a tile is 1/8 of
-/// its error with `samples` paths. Only tiles that need even more depend on the limit. [convention]
+/// its error with `samples` paths. The limit affects only tiles that need even more paths. [convention]
 const MAX_TILE_RATIO: u32 = 64;
 /// The relative error of a pixel is its error divided by its luminance. If the luminance is less than this share of
 /// the image's mean radiance, the error is divided by this share of the mean instead. [convention: the target error is
@@ -161,9 +162,9 @@ impl<'p> AdaptiveSampler<'p> {
     }
 
     /// Raises each tile's entry in `target_paths` to at least the number of paths that an allocation gives to the tile.
-    /// This allocation meets `target`, an error of the whole image, with the fewest paths. If it would take more than
-    /// `samples` paths per pixel on average, it is scaled down to `samples`. Does nothing if the image meets `target`
-    /// already.
+    /// This allocation meets `target`, an error of the whole image, with the fewest paths. If the allocation would take
+    /// more than `samples` paths per pixel on average, it is scaled down to `samples`. Does nothing if the image meets
+    /// `target` already.
     fn add_allocation(
         &self,
         accumulator: &Accumulator,
@@ -179,9 +180,10 @@ impl<'p> AdaptiveSampler<'p> {
         let deviations: Vec<f64> =
             accumulator.grid.max_with_neighbourhood_mean(&path_variances)?.into_iter().map(f64::sqrt).collect();
         // Give each tile n = k d paths per pixel. Here d is the standard deviation of the tile's paths, raised where
-        // the neighbouring tiles vary more, and k is the same for all tiles. If s is the variance of a tile's single
-        // path, the mean square error of the image is mean(s / (k d)). Take the smaller of two values of k: the one
-        // that meets the target, and the one that spends `samples` paths per pixel.
+        // the neighbouring tiles vary more, and k is the same for all tiles. If s is the variance of single paths in a
+        // tile, the mean square error of the image is the mean of s / (k d) over the tiles, weighted by their pixels.
+        // Take the smaller of two values of k: the one that meets the target, and the one that spends `samples` paths
+        // per pixel.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
                 / f64::from(whole.pixels)

@@ -33,13 +33,14 @@ pub struct BlockPixel {
 }
 
 impl BlockPixel {
-    /// Describes a pixel. Its `seed`, which depends on the replication, is derived from the seed of the image.
+    /// Builds the data of the pixel at `at` for one replication. `pixel` is its index in the tile, `length` is the
+    /// length limit of its paths, and `seed` is the seed of the image, from which the seed of its paths is derived.
     pub fn new(pixel: usize, at: [usize; 2], length: PathLength, seed: u64, replication: u32) -> Self {
         Self { pixel, at, length, seed: seed_of(seed, at, replication) }
     }
 }
 
-/// Returns the seed of one replication, that is, of one of the four point sequences of the pixel at `at`.
+/// Returns the seed of one replication (point sequence) of the pixel at `at`. `seed` is the seed of the image.
 pub fn seed_of(seed: u64, at: [usize; 2], replication: u32) -> u64 {
     rng::mix(rng::hash(seed, &at.map(|v| v as u64)) ^ u64::from(replication))
 }
@@ -61,8 +62,8 @@ pub fn blocks(replication: u32) -> [[usize; MAX_SHARED]; BLOCKS] {
 pub struct BlockTracer<'a> {
     starts: Vec<Start>,
     scratch: Scratch<SumTape>,
-    /// If the film has layers: a recorder for each pixel of a block, and the scratch memory for replaying recorded
-    /// paths.
+    /// If the film has layers (images of light path expressions or of surface attributes): a recorder for each pixel of
+    /// a block, and the scratch memory for replaying recorded paths.
     recorders: Option<(Vec<Recorder<'a>>, Scratch<LpeTape<'a>>)>,
 }
 
@@ -72,7 +73,7 @@ impl<'a> BlockTracer<'a> {
         Self { starts: Vec::with_capacity(MAX_SHARED), scratch: Scratch::default(), recorders }
     }
 
-    /// Returns the recorders of the pixels of the block.
+    /// Returns the recorders, one for each pixel of a block; `None` if the film has no layers.
     pub fn recorders(&mut self) -> Option<&mut [Recorder<'a>]> {
         self.recorders.as_mut().map(|(recorders, _)| &mut recorders[..])
     }

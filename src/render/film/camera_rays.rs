@@ -12,9 +12,10 @@ use glam::{DVec3, Vec3};
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Returns the sum of the radiance of some paths through the pixel `at`: the paths with the numbers `indices` of the
-/// point sequence with seed `seed`. Paths whose radiance is not finite are dropped and counted. All callers use this
-/// one function, so that the path tracer, which is inlined into it, is compiled only once.
+/// Traces some paths through the pixel `at` and returns the sum of their radiance. Path i is sampled by point i of the
+/// point sequence with seed `seed`; `indices` are the indices i of the paths. Paths whose radiance is not finite are
+/// dropped and counted in `discarded`. All callers use this one function, so that the path tracer, which is inlined
+/// into it, is compiled only once.
 pub fn paths(
     world: &World,
     camera_rays: &CameraRays,

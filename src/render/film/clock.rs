@@ -3,8 +3,9 @@
 use crate::error::Result;
 use std::time::{Duration, Instant};
 
-/// Smallest time between two published images, as a multiple of the time that publishing one takes: publishing takes at
-/// most one eleventh of the time. The finished image does not depend on this ratio. [convention]
+/// Smallest time between the end of one publication of an image and the start of the next, as a multiple of the time
+/// that the earlier publication took. Publishing thus takes at most one eleventh of the time of a render. The finished
+/// image does not depend on this ratio. [convention]
 const PUBLISH_RATIO: u32 = 10;
 
 /// Measures the time that a render has taken, and compares it with the time budget.
@@ -25,8 +26,9 @@ impl Clock {
         Self { start: Instant::now(), budget, sampling: Duration::ZERO, publishing: Duration::ZERO, published: None }
     }
 
-    /// Runs a pass with a deadline that leaves time for publishing the final image. Before the first image is
-    /// published, passes have no deadline, so that every render yields an image.
+    /// Runs `pass`, which traces paths until the deadline that it is given, and measures its time. The deadline leaves
+    /// time for publishing the final image. Before the first image is published, the deadline is `None`, so that every
+    /// render yields an image.
     pub fn sample(&mut self, pass: impl FnOnce(Option<Instant>) -> Result<()>) -> Result<()> {
         let start = Instant::now();
         let deadline = self.budget.map(|b| self.start + b.saturating_sub(self.publishing));

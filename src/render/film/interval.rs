@@ -1,8 +1,9 @@
 //! 95 % confidence intervals for the radiance of each pixel.
 //!
-//! The variance among a pixel's own four replications (point sequences) is a poor estimate for two reasons. It has
-//! only three degrees of freedom. And it is correlated with the mean: where no bright path has been found yet, both
-//! are too small. Intervals from this estimate contain the truth for far fewer than 95 % of the pixels.
+//! The variance among a pixel's own four replications (point sequences) is a poor estimate for two reasons. It has only
+//! three degrees of freedom. And it is correlated with the mean: where no bright path has been found yet, the variance
+//! and the mean are both too small. Intervals from this estimate contain the truth for far fewer than 95 % of the
+//! pixels.
 //!
 //! The variances are therefore averaged over 7 × 7 pixels with binomial weights. The variances of the neighbours are
 //! almost independent of the pixel's mean, because only pixels of the same block share some paths (see `block`). Since

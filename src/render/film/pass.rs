@@ -33,7 +33,9 @@ impl Pass {
         self.stride >= TILE && (left | top) & (self.stride - 1) != 0
     }
 
-    /// Returns the mean number of paths per pixel of a tile after the pass, with 0 for pixels that it does not cover.
+    /// Returns the mean number of paths per pixel of a tile after the pass; pixels that the pass does not cover count
+    /// with 0 paths. If the stride is larger than [`TILE`], the mean is not that of the tile itself, but of a square of
+    /// stride × stride pixels.
     pub fn per_pixel(&self, tile: usize) -> f64 {
         f64::from(self.counts[tile]) / (self.stride * self.stride) as f64
     }

@@ -1,12 +1,12 @@
 //! Pilot run: predicts the rendering time and the error of an image by rendering a few of its tiles.
 //!
-//! No number known before rendering predicts the cost and the variance of paths well. The pilot run therefore renders
-//! a sample of tiles exactly as the image would: at full resolution and with the same path sharing. A few tiles, such
-//! as those at the edge of a lamp, may cause most of an image's error. Therefore a few paths are first traced in all
-//! tiles (`tile_moments`), to estimate the standard deviation of each tile's light. Tiles are selected with a
-//! probability proportional to this deviation, and weighted by its reciprocal (Horvitz and Thompson 1952). These few
-//! paths may miss the edge of a lamp in one tile but find it in the next, so the deviations are spread to neighbouring
-//! tiles.
+//! No number known before rendering predicts the cost and the variance of paths well. The pilot run therefore renders a
+//! sample of tiles exactly as the image would: at full resolution and with the same path sharing. A few tiles, such as
+//! those at the edge of a lamp, may cause most of an image's error. Therefore a few paths are first traced in all tiles
+//! (`tile_moments`), to estimate the standard deviation of each tile's light. Tiles are selected with a probability
+//! proportional to this deviation, and weighted by the reciprocal of this probability (Horvitz and Thompson 1952). The
+//! few paths that are traced first may miss the edge of a lamp in one tile but find it in the next, so the deviations
+//! are spread to neighbouring tiles.
 //!
 //! The interior of a lamp in view has no variance. Its tiles are hardly ever selected, although they may have most of
 //! the image's radiance. The mean of the image is therefore taken from the first few paths, which cover all tiles. The
@@ -15,7 +15,8 @@
 //!
 //! With stratified points, the variance of a pixel falls faster than 1 / n, at a rate that depends on the scene. The
 //! pilot run therefore measures the variance at three numbers of paths. It traces the largest number only in some of
-//! the tiles, selected in proportion to their share of the variance at the second number.
+//! the tiles. These tiles are selected in proportion to their share of the variance that was measured at the second
+//! number.
 
 pub use super::adaptive::MIN_UNIFORM_PATHS;
 use super::camera_rays::CameraRays;
@@ -62,8 +63,8 @@ pub struct Pilot {
     /// Number of paths that uniform sampling needs, divided by the number that adaptive sampling needs for the same
     /// error; at least 1.
     pub adaptive_gain: f64,
-    /// Root mean square of the image's radiance, divided by its mean. If the error of every pixel is the same share of
-    /// the pixel's radiance, then [`super::super::Film::error`] is that share times `contrast`.
+    /// Root mean square of the image's radiance, divided by the mean radiance. If the error of every pixel is the same
+    /// share of the pixel's radiance, then [`super::super::Film::error`] is that share times `contrast`.
     pub contrast: f64,
 }
 
@@ -142,7 +143,7 @@ pub fn run(
     let area = (grid.width * grid.height) as f64;
     let mean = |tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64| total(tile_sums, of) / area;
 
-    // Measure the variance at three numbers of paths. Use the last number only for some of the tiles.
+    // Measure the variance at three numbers of paths per pixel. Trace the largest number only in some of the tiles.
     let few = render(&mut chosen, PATHS[0], job.part(0.1, 0.2))?;
     let middle = render(&mut chosen, PATHS[1], job.part(0.2, 0.6))?;
     let part = |t: &TileSums| t.weight * t.variance;
@@ -195,9 +196,10 @@ fn render_tiles(
 /// pilot's three passes. The tiles' own times are times on one thread, so only their ratios are used.
 ///
 /// Expensive tiles may be selected more often than others, so the pilot's own time per path, `seconds / paths`, is
-/// biased. The result is `seconds / paths` times the ratio of two means of the tiles' times per path. In the first
-/// mean, the weight of a tile is its number of pixels times the number of tiles that it represents. In the second mean,
-/// the weight is the number of paths that the pilot traced in the tile.
+/// biased; `paths` is the number of all paths that the pilot traced. The result is `seconds / paths` times the ratio of
+/// two means of the tiles' times per path. In the first mean, the weight of a tile is its number of pixels times the
+/// number of tiles that it represents. In the second mean, the weight is the number of paths that the pilot traced in
+/// the tile.
 fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f64 {
     let sum = |of: &dyn Fn(&PilotTile, &TileSums) -> f64| chosen.iter().zip(sums).map(|(c, t)| of(c, t)).sum::<f64>();
     let paths = sum(&|c, t| c.paths * t.pixels);
@@ -207,8 +209,8 @@ fn seconds_per_path(chosen: &[PilotTile], sums: &[TileSums], seconds: f64) -> f6
     seconds / paths * bias
 }
 
-/// Selects pilot tiles. The probability of a tile grows with the standard deviation of its light, or of the light of
-/// the 3 × 3 tiles around it if that is larger.
+/// Selects pilot tiles. The probability that a tile is selected grows with a standard deviation: the square root of the
+/// variance of the tile's paths, or of the mean variance of the 3 × 3 tiles around it if that is larger.
 fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<PilotTile>> {
     let variances = try_collect(expected.iter().map(|l| l.variance))?;
     let varies = grid.max_with_neighbourhood_mean(&variances)?;
@@ -236,8 +238,9 @@ fn choose(expected: &[TileMoments], grid: Grid, rng: &mut Rng) -> Result<Vec<Pil
     Ok(chosen)
 }
 
-/// Systematic sampling: lays the items side by side on a line, each as long as its chance, places marks at equal
-/// distances, and selects each item that contains a mark.
+/// Systematic sampling: lays the items side by side on a line, places marks at equal distances, and selects each item
+/// that contains a mark. The length of an item is called its chance: the probability that the item is selected is
+/// proportional to it.
 struct SystematicSampler {
     step: f64,
     next: f64,
@@ -245,15 +248,16 @@ struct SystematicSampler {
 }
 
 impl SystematicSampler {
-    /// Places `count` marks at equal distances, with a random start, in the interval `[0, sum]`.
+    /// Places `count` marks at equal distances, with a random start, in the interval `[0, sum]`. `sum` is the sum of
+    /// the chances of all items.
     fn new(sum: f64, count: usize, rng: &mut Rng) -> Self {
         let step = sum / count as f64;
         Self { step, next: rng.next_f64() * step, end: 0.0 }
     }
 
-    /// Returns the weight of the next item, whose chance is `chance`. The weight is the number of items that this item
-    /// represents, or 0 if it is not selected. An item that is longer than the distance between marks may contain
-    /// several marks; each adds to its weight.
+    /// Returns the weight of the next item, whose length on the line is `chance`. The weight is the number of items
+    /// that this item represents, or 0 if this item is not selected. An item that is longer than the distance between
+    /// marks may contain several marks; each adds to its weight.
     fn weight_of(&mut self, chance: f64) -> f64 {
         self.end += chance;
         let mut marks = 0.0;
@@ -277,7 +281,7 @@ fn tile_sums(grid: Grid, chosen: &PilotTile) -> TileSums {
     sum
 }
 
-/// Returns the estimated sum of a quantity over all tiles of the image.
+/// Estimates the sum of the quantity `of` over all tiles of the image, from the pilot tiles and their weights.
 fn total(tile_sums: &[TileSums], of: &dyn Fn(&TileSums) -> f64) -> f64 {
     tile_sums.iter().map(|t| t.weight * of(t)).sum()
 }

@@ -10,8 +10,9 @@
 
 use glam::{DVec3, Vec3};
 
-/// Number of independently scrambled point sequences per pixel. To estimate its variance, each of the two halves needs
-/// at least two sequences ([`Pixel::half_variances`]), so four is the smallest number. \[convention\]
+/// Number of independently scrambled point sequences per pixel. Each of the two halves of a pixel needs at least two
+/// sequences for an estimate of the half's variance ([`Pixel::half_variances`]), so four is the smallest number.
+/// \[convention\]
 pub const REPLICATIONS: u32 = 4;
 
 /// Sums over the paths of a pixel so far.
@@ -79,7 +80,7 @@ impl Pixel {
     }
 
     /// Returns the mean radiance over the replications except the brightest and the darkest one, averaged over the
-    /// channels. A single bright path hardly changes it.
+    /// channels. A single bright path hardly changes this mean.
     pub fn trimmed_mean(&self) -> f64 {
         let mut means: [f64; REPLICATIONS as usize] = std::array::from_fn(|i| {
             let paths = paths_of_replication(self.count, i as u32).max(1);

@@ -1,4 +1,5 @@
-//! Averages the variances of pixels over their neighbours, which makes them accurate enough for confidence intervals.
+//! Averages the estimated variances of neighbouring pixels. The averages are accurate enough for confidence intervals;
+//! the estimate from a single pixel is not.
 
 use crate::error::Result;
 use crate::exec;

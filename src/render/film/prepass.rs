@@ -1,10 +1,11 @@
-//! Prepass for renders in parts: traces a few paths over the whole image, from which every part takes the same weights
-//! for Russian roulette (see `roulette`).
+//! Prepass for renders in parts: traces a few paths over the whole image. From these paths, every part computes the
+//! same weights for Russian roulette (see `roulette`).
 //!
 //! A render of the whole image takes these weights from its own earlier passes. The parts of a distributed render do
-//! not know each other's paths. Instead, each part traces the same few paths over the image and over each of its
-//! tiles, and gets the same weights. These paths have their own seeds and are not part of the image, so they bias no
-//! estimate. From them, the part also learns which lights reach the surfaces in view.
+//! not know each other's paths. Instead, each part traces a few paths over the whole image, and a few paths in each of
+//! its own tiles. These paths are the same in every part, so all parts get the same weights. They have their own seeds
+//! and are not part of the image, so they bias no estimate. The paths over the whole image also show which lights reach
+//! the surfaces in view.
 
 use super::block::seed_of;
 use super::camera_rays::{CameraRays, paths};

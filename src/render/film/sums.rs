@@ -1,9 +1,9 @@
 //! The sums of one part of a render. A part is a rectangle of the image and a range of its pixels' paths. The sums of
 //! all parts together give the image.
 //!
-//! The path with a given index in a pixel is the same in every part: it has the same place in the same point sequence.
-//! The sums are in f64, so that the f32 image hardly ever depends on how the paths are divided into parts, or on the
-//! order in which the sums are added.
+//! The path with a given index in a pixel is the same in every part, because every part samples it with the same point
+//! of the same point sequence. The sums are in f64, so that the f32 image hardly ever depends on how the paths are
+//! divided into parts, or on the order in which the sums are added.
 
 use super::block::{BlockPixel, BlockTracer, blocks};
 use super::camera_rays::CameraRays;
@@ -111,7 +111,7 @@ impl Sums {
         Ok(sums)
     }
 
-    /// Adds the sums of `other`, a part that lies within this one.
+    /// Adds the sums of `other`, whose part lies within the part of `self`.
     pub fn join(&mut self, other: &Self, layers: Option<&Layers>, job: Job) -> Result<()> {
         let Self { corner, grid, numbers_per_pixel, numbers, .. } = self;
         exec::for_rows(numbers, AREA * *numbers_per_pixel, job, |tile, numbers| {

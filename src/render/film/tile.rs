@@ -12,8 +12,8 @@ use crate::render::world::World;
 use glam::DVec3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Number of paths of a pixel between two checks of the clock: when pixels are traced alone (`SLICE`), and in blocks
-/// (`BLOCK_SLICE`). [convention]
+/// Number of paths of a pixel between two checks whether to stop (cancellation or the deadline): when pixels are traced
+/// alone (`SLICE`), and when they are traced in blocks (`BLOCK_SLICE`). [convention]
 const SLICE: u32 = 64;
 const BLOCK_SLICE: u32 = 16;
 

@@ -7,9 +7,9 @@ use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
 
-/// Largest number of paths of all tiles together, a limit on the work. Large images get fewer paths per tile to meet
-/// the limit, but at least `MIN_ALONG` × `MIN_ALONG`. The pilot's predictions are unbiased for any number of
-/// paths. [convention]
+/// Largest number of paths of all tiles together, a limit on the work. In large images, each tile gets fewer paths to
+/// meet this limit, but at least `MIN_ALONG` × `MIN_ALONG` paths. The pilot's predictions are unbiased for any number
+/// of paths. [convention]
 const MAX_TOTAL_PATHS: usize = 1 << 17;
 /// Largest and smallest number of paths along each side of a tile. Both are powers of two, as is the side of a tile.
 const MAX_ALONG: usize = TILE;

@@ -8,11 +8,12 @@
 //! is seen edge-on has no projected area and causes no glare. The background luminance is
 //! `E / π`, where E is the indirect illuminance at the eye on a plane perpendicular to the line of sight.
 //!
-//! Each connected luminous part of an emissive mesh is a source, too. Rays find its mean luminance towards the eye and
-//! its solid angle (`surfaces`), both of the visible part.
+//! Each connected luminous part of an emissive mesh is a source, too. Rays from the eye find the mean luminance and the
+//! solid angle of its visible part (`surfaces`).
 //!
-//! Not modelled: the environment and lights without area as glare sources; the glow around lamps in a texture, which is
-//! darker than a tenth of their light. The rating leaves them out, but reports their direct illuminance at the eye.
+//! Not modelled: the environment and lights without area as glare sources; the glow around lamps in an emission
+//! texture, where the texture is darker than a tenth of its largest luminance. The rating leaves this light out, but
+//! reports its direct illuminance at the eye.
 
 mod surfaces;
 
@@ -65,8 +66,8 @@ pub struct Rating {
     /// Background luminance in cd/m², and its standard error.
     pub background: f64,
     pub background_error: f64,
-    /// Direct illuminance at the eye, in lux, from light that the rating ignores: of the environment, of lights without
-    /// a luminous opening, and the glow of emissive surfaces.
+    /// Direct illuminance at the eye, in lux, from the light that the rating ignores: from the environment, from lights
+    /// without a luminous opening, and from the glow of emissive surfaces.
     pub unrated_lux: f64,
     pub sources: Vec<GlareSource>,
 }
@@ -193,8 +194,9 @@ impl Lamp {
         (area > largest * EDGE_ON).then_some(ApparentLamp { towards, distance, area, candela })
     }
 
-    /// Returns which share of the opening's projected area is visible, and the mean, over the visible part, of the
-    /// squared transmittance of the panes in front of it. The transmittance is squared because the rating sums L² ω.
+    /// Returns the visible share of the opening's projected area, and the mean, over the visible part, of the squared
+    /// transmittance of the panes in front of it; both are 0 if the opening is hidden. The transmittance is squared
+    /// because the rating sums L² ω.
     fn visibility(&self, world: &World, eye: DVec3, towards: DVec3) -> (f64, f64) {
         let u = self.local(-towards);
         let (mut visible, mut squares, mut total) = (0.0, 0.0, 0.0);
@@ -233,7 +235,7 @@ fn lamps(world: &World) -> Vec<Lamp> {
 
 /// The lights that the rating takes into account.
 struct Rated<'a> {
-    /// In the order of the lights of the scene.
+    /// The luminaires with a luminous opening, in the order of the lights of the scene.
     lamps: &'a [Lamp],
     surfaces: &'a EmissiveSurfaces,
 }

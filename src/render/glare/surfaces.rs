@@ -1,16 +1,17 @@
 //! Emissive surfaces as glare sources: the connected luminous parts of meshes that an observer sees.
 //!
-//! A raster whose cells have equal solid angles covers the half of space ahead of the eye. Several rays at random
-//! places in a cell find the luminous surfaces there. They meet luminous surfaces only, so a thing in front of a lamp
-//! does not divide the lamp.
+//! A raster whose cells have equal solid angles covers the hemisphere of directions ahead of the eye. Several rays at
+//! random places in a cell find the luminous surfaces in the cell. These rays ignore all other surfaces, so an object
+//! in front of a lamp does not divide the lamp into two sources.
 //!
 //! The search begins in the cells in whose centre a surface is luminous, and in the cells along the edges of the
-//! emissive triangles, so that it finds narrow profiles, too. From each cell with a luminous surface, it goes on to the
-//! cells beside it. Touching cells in which the same connected surface is luminous form a source. Their rays give its
-//! mean luminance and its solid angle, without the parts that other things hide. As 16 rays look
-//! into a cell, the solid angle of a source of few cells is noisy; no stated error contains this noise.
+//! emissive triangles, so that it finds narrow profiles, too. From each cell with a luminous surface, the search goes
+//! on to the neighbouring cells. Touching cells in which the same connected surface is luminous form a source. The rays
+//! in these cells give the mean luminance and the solid angle of the source, without the parts that other objects hide.
+//! As only 16 rays look into a cell, the solid angle of a source of few cells is noisy; the rating states no error for
+//! this noise.
 //!
-//! Not modelled: lamps in emission textures that are narrower than a cell, 0.32°, and may be missed.
+//! Not modelled: lamps in emission textures that are narrower than a cell (0.32°). The search may miss them.
 
 use crate::accel::{Accel, Hit, Ray};
 use crate::error::Result;
@@ -26,18 +27,19 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 const SIDE: usize = 512;
 /// Rays in each cell that is looked into: `RAYS` × `RAYS`.
 const RAYS: usize = 4;
-/// A surface point is luminous if its luminance is at least this share of the largest that its material emits. The
-/// glow around lamps in a texture is darker than this. [convention]
+/// A surface point is luminous if its luminance is at least this share of the largest luminance that its material
+/// emits. In an emission texture, this excludes the glow around lamps. [convention]
 const MIN_SHARE: f32 = 0.1;
-/// Visibility rays end at this share of the distance to the surface, so that they do not hit it. [rounding]
+/// Visibility rays end at this share of the distance to the surface, so that they do not hit that surface itself.
+/// [rounding]
 const NEARLY: f32 = 0.9999;
-/// Directions along the edges of triangles are at most this far apart, in radians: half the width of a cell.
-/// [convention]
+/// The search tests points along the edges of emissive triangles. Seen from the eye, neighbouring points are at most
+/// this far apart, in radians: half the width of a cell. [convention]
 const EDGE_STEP: f32 = 0.0028;
-/// Maximum number of such directions along an edge. An edge that passes close by the eye would need more; the search
-/// from cell to cell then finds the rest. [convention]
+/// Largest number of steps from point to point along an edge. An edge that passes close by the eye would need more
+/// steps; the search from cell to cell then finds the cells that were left out. [convention]
 const MAX_EDGE_STEPS: f32 = 2048.0;
-/// Number of a source whose cells are not numbered yet.
+/// Label of a piece (a [`CellSurface`]) that does not have the number of a source yet.
 const NONE: u32 = u32::MAX;
 
 /// The emissive meshes of a scene.
@@ -79,25 +81,28 @@ struct Luminous {
     luminance: f32,
 }
 
-/// What rays have seen of a source, or of a surface in one cell.
+/// Sums over the rays that have seen a source, or a piece of it in one cell: `rays` is the number of these rays,
+/// `luminance` the sum of the luminances, `squared_share` the sum of the squared transmittances of the panes in front,
+/// and `towards` the sum of the directions.
 #[derive(Clone, Copy, Default)]
 struct RaySums {
     mesh: usize,
-    /// Number of rays that have seen it.
+    /// Number of rays that have seen the source or the piece.
     rays: f64,
     luminance: f64,
     squared_share: f64,
     towards: DVec3,
 }
 
-/// A luminous surface in a cell.
+/// A piece: the part of one connected luminous surface that lies in one cell.
 struct CellSurface {
     cell: u32,
     surface: u32,
     sums: RaySums,
 }
 
-/// The cells that the search has yet to look into. Each cell is added only once.
+/// The cells that the search has yet to look into (`open`), and for each cell, whether it has ever been added to them
+/// (`is_known`). Each cell is added only once.
 struct OpenCells {
     is_known: Vec<bool>,
     open: Vec<u32>,
@@ -133,12 +138,12 @@ impl EmissiveSurfaces {
         Ok(Self { accel: Accel::build(&corners, job)?, surface_of, min_luminance })
     }
 
-    /// Whether light of this luminance, from a mesh, comes from a luminous part.
+    /// Whether a point of a mesh is luminous if it emits with `luminance`, in cd/m² ([`MIN_SHARE`]).
     pub fn is_luminous(&self, world: &World, mesh: u32, luminance: f32) -> bool {
         luminance > 0.0 && luminance >= self.min_luminance[world.mesh(mesh).material]
     }
 
-    /// Returns the sources that an eye sees, in the order in which the rows of the raster meet them.
+    /// Returns the sources that an eye sees, in the order of their first cells, row by row of the raster.
     pub fn seen_from(&self, view: &View, seed: u64, job: Job) -> Result<Vec<LuminousPart>> {
         if self.surface_of.is_empty() {
             return Ok(Vec::new());
@@ -202,7 +207,8 @@ impl EmissiveSurfaces {
         Ok(())
     }
 
-    /// Traces the rays of a cell. Adds each luminous surface that they meet to `pieces`.
+    /// Traces the rays of a cell. For each connected luminous surface that the rays meet, adds a piece to `pieces`; its
+    /// sums are 0 if other objects hide the surface from all rays.
     fn look_into(&self, cell: usize, view: &View, rng: &mut Rng, pieces: &mut Vec<CellSurface>) -> Result<()> {
         let emitters = &view.world.lights().emitters.emitters;
         let first = pieces.len();
@@ -236,14 +242,16 @@ impl EmissiveSurfaces {
         Ok(())
     }
 
-    /// Returns the nearest luminous point on a ray.
+    /// Returns the nearest luminous point on a ray, even if other objects hide it; `None` if the ray meets no luminous
+    /// point.
     fn nearest(&self, world: &World, ray: &Ray) -> Option<Luminous> {
         let hit = self.accel.closest(ray, |hit| self.luminance(world, ray, hit) > 0.0)?;
         let luminance = self.luminance(world, ray, &hit);
         Some(Luminous { emitter: hit.triangle as usize, distance: hit.t, luminance })
     }
 
-    /// Returns the luminance of a surface towards the eye; 0 if the surface is not luminous there.
+    /// Returns the luminance of an emissive surface at a hit, towards the eye, times the opacity of the surface; 0 if
+    /// the surface is not luminous there.
     fn luminance(&self, world: &World, ray: &Ray, hit: &Hit) -> f32 {
         let emitter = &world.lights().emitters.emitters[hit.triangle as usize];
         if !emitter.faces(ray.direction) {
@@ -258,9 +266,10 @@ impl EmissiveSurfaces {
 }
 
 impl View<'_> {
-    /// Returns the direction and the ray to a point of a cell, which `place` gives in `[0, 1]²`; `None` if the point is
-    /// not ahead of the eye. The map has equal areas (Lambert's azimuthal projection): the hemisphere ahead of the eye
-    /// becomes the circle in the raster.
+    /// Returns the direction and the ray from the eye through a point of a cell; `None` if the direction does not lead
+    /// ahead of the eye. `place` is the position of the point in the cell, in `[0, 1]²`. The map from directions to the
+    /// raster preserves areas (Lambert's azimuthal projection): it maps the hemisphere ahead of the eye to the circle
+    /// inscribed in the raster.
     fn ray(&self, cell: usize, place: DVec2) -> Option<(DVec3, Ray)> {
         let at = (DVec2::new((cell % SIDE) as f64, (cell / SIDE) as f64) + place) * (2.0 / SIDE as f64) - 1.0;
         let squared = at.length_squared();
@@ -300,7 +309,8 @@ impl RaySums {
     }
 
     fn part(&self) -> LuminousPart {
-        // The circle in the raster has the area π in units of half the raster's side, and stands for 2π steradians.
+        // Take half the side of the raster as the unit of length. The inscribed circle then has the area π and stands
+        // for 2π steradians, so the raster, of area 4, stands for 8 steradians.
         let of_ray = 8.0 / (SIDE * SIDE * RAYS * RAYS) as f64;
         LuminousPart {
             mesh: self.mesh,
@@ -333,8 +343,8 @@ fn neighbours(cell: usize) -> impl Iterator<Item = usize> {
     beside(y).flat_map(move |y| beside(x).map(move |x| y * SIDE + x))
 }
 
-/// Numbers the sources: pieces of one surface in touching cells belong to one source. `pieces` are in the order of
-/// their cells and surfaces. Returns the number of each piece's source, and the number of sources.
+/// Numbers the sources: pieces of one surface in touching cells belong to one source. `pieces` must be sorted by cell,
+/// and within a cell by surface. Returns the number of each piece's source, and the number of sources.
 fn label(pieces: &[CellSurface]) -> Result<(Vec<u32>, usize)> {
     let at = |cell: usize, surface: u32| {
         pieces.binary_search_by_key(&(cell as u32, surface), |piece| (piece.cell, piece.surface)).ok()

@@ -1,4 +1,4 @@
-//! Learns during a render which lights reach the surfaces in view, and samples the others rarely.
+//! Learns during a render which lights reach the surfaces in view, and samples the remaining lights rarely.
 //!
 //! In a building, walls hide most lamps from the surfaces in view, and light samples of hidden lamps are wasted: to
 //! render one room of a building of 225 rooms takes 30 times as many paths as to render that room alone. The first
@@ -38,8 +38,8 @@ const MIN_ARRIVAL: f64 = 0.003;
 const UNLIKELY_SHARES: [f64; 2] = [0.03, 0.1];
 const UNLIKELY_ROOT: f64 = 4.0;
 /// The probability that a light's samples arrive is estimated from the samples of its neighbours in the light tree.
-/// Each neighbour counts as at most this many samples. If it has more, its numbers of drawn and of arrived samples are
-/// divided by the same number. [judged on 3 scenes]
+/// Each neighbour counts as at most this many samples: if a neighbour has more, its numbers of drawn and of arrived
+/// samples are scaled down by the same factor. [judged on 3 scenes]
 const MAX_NEIGHBOUR_SAMPLES: f64 = 16.0;
 /// The importance of a likely light is multiplied by the square root of the probability that a sample of the light
 /// arrives. This factor is rounded to a power of two and is at least this value. [judged on 3 scenes]
@@ -60,7 +60,8 @@ pub struct LampVisibility {
 }
 
 impl LampVisibility {
-    /// Returns the result as a sentence for the user, which explains how lamps out of reach are treated.
+    /// Returns a sentence for the user: how many lamps are hidden, and that these lamps get few of the further light
+    /// samples.
     pub fn sentence(&self) -> String {
         let [hidden, lamps, samples] = [self.hidden, self.lamps, self.samples as usize].map(grouped);
         format!(
@@ -121,7 +122,8 @@ impl Split {
         self.likely.groups[2] * self.shares[0] + self.unlikely.groups[2] * self.shares[1]
     }
 
-    /// Whether `weights` would give the same division: exactly the present unlikely lights have weight 0.
+    /// Whether exactly the present unlikely lights have the weight 0 in `weights`. A new split by `weights` would then
+    /// have the same likely and unlikely lights as `self`.
     pub fn is_same(&self, weights: &[f32]) -> bool {
         self.weights.iter().zip(weights).all(|(&a, &b)| (a > 0.0) == (b > 0.0))
     }

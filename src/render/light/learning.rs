@@ -10,10 +10,10 @@ use crate::error::Result;
 use crate::render::vicinity::PositionReservoir;
 use std::sync::Arc;
 
-/// Unlikely lights get a selector of their own only if at least this share of all light samples so far went to them.
-/// Below this share, the selector would save hardly any samples, because unlikely lights would still get 3 to 10 %
-/// (`lamp_visibility::UNLIKELY_SHARES`). The render then keeps one selector for all lights, and its image equals, to
-/// the last bit, the image without learning. [bench buildings]
+/// Unlikely lights get a selector of their own only if at least this share of all light samples so far went to unlikely
+/// lights. Below this share, the selector would save hardly any samples, because unlikely lights would still get 3 to
+/// 10 % of the samples (`lamp_visibility::UNLIKELY_SHARES`). The render then keeps one selector for all lights, and its
+/// image equals, to the last bit, the image without learning. [bench buildings]
 const MIN_GAIN: f64 = 0.2;
 /// The first decision is made after max(`FIRST_DECISION`, number of lights / 2) light samples. [convention]
 const FIRST_DECISION: u64 = 256;
@@ -68,10 +68,10 @@ impl Lights {
         Ok(Some(lights))
     }
 
-    /// Returns the recorded positions of receivers, and the number of light samples counted so far. Returns `None` if
-    /// no positions are recorded any more. Also returns `None` if the scene is open, which means that many rays leave
-    /// the surroundings of these positions: more than [`MAX_OPEN`] of the samples of directional lights and of the
-    /// environment arrive.
+    /// Returns the recorded positions of receivers, and the number of light samples that were counted up to the last
+    /// decision. Returns `None` if no positions are recorded any more. Also returns `None` if the scene is open, which
+    /// means that many rays leave the surroundings of these positions: more than [`MAX_OPEN`] of the samples of
+    /// directional lights and of the environment arrive.
     pub fn positions(&self) -> Result<Option<(&PositionReservoir, u64)>> {
         let Some(survey) = self.survey.as_deref().filter(|_| self.progress.counts_likely()) else { return Ok(None) };
         let mut far = SampleCounts::default();

@@ -16,8 +16,8 @@ pub struct LuminousSurfaces {
 }
 
 impl LuminousSurfaces {
-    /// Finds the lamps, as [`connected`] defines them. `pieces` is the number of pieces into which the triangles are
-    /// divided.
+    /// Groups the luminous surfaces into lamps by [`connected`]: each connected surface is one lamp. `pieces` is the
+    /// number of pieces into which the triangles are divided.
     pub fn new(emitters: &Emitters, pieces: usize) -> Result<Self> {
         let roots = connected(emitters)?;
         // Number the lamps in the order of their first pieces. A set of connected triangles without pieces is dark and

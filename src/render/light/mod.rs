@@ -133,7 +133,8 @@ impl Lights {
         self.inventory.pieces
     }
 
-    /// Returns the corners of the boxes around the lit parts of the pieces, in world coordinates.
+    /// Returns the corners of the pieces' bounding boxes, in world coordinates. A box encloses the part of its piece
+    /// that emits.
     pub fn piece_corners(&self) -> impl Iterator<Item = Vec3> {
         let of_box = |b: &Bounds| [b.low.to_array(), b.high.to_array()];
         let boxes = self.inventory.bounds[..self.inventory.pieces].iter().map(of_box);
@@ -313,7 +314,8 @@ impl Lights {
     }
 }
 
-/// Converts an area pdf to a solid-angle pdf; `cosine` is the cosine at the light.
+/// Converts an area pdf to a solid-angle pdf. `cosine` is the cosine of the angle between the light's normal and the
+/// direction; `distance` is the distance from the receiver to the point on the light.
 fn to_solid_angle(pdf: f32, cosine: f32, distance: f32) -> f32 {
     pdf * distance * distance / cosine.abs()
 }

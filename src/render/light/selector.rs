@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 ///
 /// 1. The pieces of emissive surfaces: triangles, tiles of textured triangles, and patches of luminaires' faces.
 /// 2. The punctual lights at a finite distance.
-/// 3. One number for every punctual light of the scene; only those of directional lights are used.
+/// 3. One number for every punctual light of the scene. Only the numbers of directional lights are used.
 /// 4. The environment.
 pub struct Inventory {
     /// Bounds of the lights at a finite distance.

@@ -74,7 +74,7 @@ fn sampled_lights_follow_the_pmf_of_the_tree() {
                     Some((light, pmf, rest)) => {
                         counts[light] += 1.0;
                         assert!((0.0..1.0).contains(&rest));
-                        // Compare loosely: `sample` and `pmf` multiply the same factors in opposite order.
+                        // Allow for rounding: `sample` and `pmf` multiply the same factors, but in opposite order.
                         assert!((f64::from(pmf) / stated[light] - 1.0).abs() < 1e-5);
                     }
                 }
@@ -161,7 +161,8 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
             }
             LightSource::Surface { .. } => {
                 counts[6] += 1.0;
-                // The mean of 1 / pdf on the lamp and 0 elsewhere, over all n samples, is the lamp's solid angle.
+                // A sample on the lamp counts 1 / pdf, any other sample counts 0. The mean over all n samples estimates
+                // the lamp's solid angle.
                 surface += f64::from(1.0 / sample.pdf) / f64::from(n);
             }
             LightSource::Environment => {
@@ -337,8 +338,8 @@ fn measure(scene: Scene) -> (f64, f64) {
     (mean, (means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n * (n - 1.0))).sqrt())
 }
 
-/// Compares a measured mean and its standard error with a closed form. `slack` is the relative error of the closed
-/// form for the tested geometry.
+/// Asserts that a measured mean agrees with `expected`, the value of a closed form, to within four standard errors
+/// (`error`) plus `slack` × `expected`. `slack` is the relative error of the closed form for the tested geometry.
 fn assert_close((mean, error): (f64, f64), expected: f64, slack: f64, what: &str) {
     assert!((mean - expected).abs() < 4.0 * error + slack * expected, "{what}: {mean} ± {error}, expected {expected}");
 }
@@ -399,7 +400,8 @@ fn discs_and_spheres_light_by_their_form_factors() {
     let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
     assert_close(measured, PI / 5.0, 5e-5, "disc");
 
-    // A sphere, r = 1 m, d = 3 m above the floor: E = π L r² / d². Its facets, inside it, make E up to 1 % smaller.
+    // A sphere of radius r = 1 m, whose centre is d = 3 m above the floor: E = π L r² / d². The facets of the mesh lie
+    // inside the sphere, so E of the mesh is up to 1 % smaller.
     let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
     let at = |i: usize, j: usize| {
         let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);

@@ -1,5 +1,5 @@
-//! A light tree: a hierarchy of light clusters. Sampling descends it with a single random number, selecting children
-//! in proportion to their importance for the receiver.
+//! A light tree: a hierarchy of light clusters. Sampling descends the tree from the root with a single random number;
+//! at each node, it selects a child in proportion to the child's importance for the receiver.
 //!
 //! Nodes have up to eight children, whose importances are computed together. Compared with binary nodes, wide nodes
 //! need fewer steps and rely less on the coarse bounds of large clusters. Splits minimise the surface area orientation
@@ -17,10 +17,10 @@ const BINS: usize = 12;
 /// From this depth on, splits halve the number of lights instead of minimising the heuristic. This limits the depth of
 /// the tree. [convention]
 const MAX_HEURISTIC_DEPTH: u32 = 48;
-/// Costs that differ by less than this share count as equal. Of splits of equal cost, the last one is chosen (in the
-/// order of axes and borders). When the children of a node are formed, the first one of several parts of equal cost is
-/// divided. Regular patterns of lamps often have equal costs, which differ only by rounding when computed. Rounding
-/// must not decide, so that a scaled scene gets the same tree, and thus the same image. [rounding]
+/// Costs count as equal if their relative difference is less than this value. Of splits of equal cost, the last one is
+/// chosen (in the order of axes and borders). When the children of a node are formed, the first one of several parts of
+/// equal cost is divided. Regular patterns of lamps often have equal costs, which differ only by rounding when
+/// computed. Rounding must not decide, so that a scaled scene gets the same tree, and thus the same image. [rounding]
 const TIE: f32 = 1e-4;
 /// Offset, in bins, that is added to a position. A light on the border of two bins then falls into the upper bin,
 /// whichever way its position is rounded. [rounding]
@@ -108,7 +108,8 @@ impl LightTree {
     }
 
     /// Appends the nodes of a cluster, parents before children. `slot` is the slot of the cluster in its parent node,
-    /// as in [`Node::parent_slot`]. Returns the entry for [`Node::children`], and the bounds of the cluster.
+    /// as in [`Node::parent_slot`]; `scale` is the factor on all intensities. Returns the entry for [`Node::children`],
+    /// and the bounds of the cluster.
     fn add(&mut self, items: &[Item], clusters: &[Cluster], cluster: u32, slot: u32, scale: f32) -> (u32, Bounds) {
         if cluster & LIGHT != 0 {
             let item = &items[(cluster & !LIGHT) as usize];
@@ -140,8 +141,8 @@ impl LightTree {
         (index as u32, Bounds::union(&bounds))
     }
 
-    /// Returns the number of clusters; a tree without nodes counts as one cluster. A cluster has a lower index than the
-    /// clusters within it.
+    /// Returns the number of clusters. A tree that has lights but no nodes counts as one cluster; a tree without lights
+    /// has no cluster. A cluster has a lower index than the clusters within it.
     pub fn clusters(&self) -> usize {
         self.nodes.len().max(usize::from(!self.fixed.is_empty()))
     }
@@ -217,9 +218,10 @@ impl LightTree {
     }
 }
 
-/// Divides the cluster of the lights `items` down to single lights, in parallel. `clusters` is the part of the list of
-/// clusters for these lights; it starts at index `first` of the whole list. Returns the index of the cluster in the
-/// whole list, or of its only light with the bit `LIGHT` set.
+/// Divides the cluster of the lights `items` recursively, down to single lights; large clusters are divided in parallel
+/// ([`PARALLEL_FROM`]). `clusters` is the slice of the list of clusters that belongs to these lights; the slice starts
+/// at index `first` of the list. Returns the index of the cluster in the list; for a single light, returns the index
+/// `first` with the bit `LIGHT` set.
 fn divide(items: &mut [Item], clusters: &mut [Cluster], first: usize, depth: u32) -> u32 {
     if items.len() == 1 {
         return LIGHT | first as u32;

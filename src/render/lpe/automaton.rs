@@ -2,8 +2,8 @@
 //! Rabin and Scott 1959; minimisation by partition refinement, Moore 1956).
 //!
 //! A path consists of the camera, scattering events and a light. It moves through the automaton with one look-up per
-//! event. States from which no light can complete an expression are merged into [`DEAD`]; light in this state is
-//! dropped. Equivalent states are merged too, because a path stores its light separately for each state.
+//! event. States from which no light can complete an expression are merged into [`DEAD`]; the light of a path in this
+//! state is dropped. Equivalent states are merged too, because a path stores its light separately for each state.
 
 use super::alphabet::{Alphabet, SCATTERS, Scatter};
 use super::parse::{Event, EventSet, SyntaxTree, kind};

@@ -26,8 +26,8 @@
 //!
 //! If an event has several labels, all must match: `<RD'Floor''Wood'>`. A label that does not exist in the scene is an
 //! error, since a black image would hide the mistake; excluded labels (`[^'coat']`) need not exist. In Open Shading
-//! Language, emissive surfaces are `O` and the environment is `B`; [`EmitterAs`] decides whether they are also `L`.
-//! Arnold's built-in expressions are available by name ([`BUILT_IN`]).
+//! Language, emissive surfaces are `O` and the environment is `B`; [`EmitterAs`] decides whether they are also `L`. The
+//! built-in expressions of the renderer Arnold are available by name ([`BUILT_IN`]).
 //!
 //! Events at a surface: the diffuse layer is `<RD>`; the top layer is `<RG>`, or `<RS>` if it is a mirror. A clear
 //! pane is both `<TS>` and `<Ts>`, for paths and for shadow rays. Where a ray passes through a surface because its
@@ -85,10 +85,10 @@ impl Expression {
     }
 }
 
-/// Built-in expressions with their names, after Arnold. "direct" is light that is scattered once on its way from a
-/// source to the camera. A source is a light, the environment or an emissive surface. "specular" is glossy and mirror
-/// reflection. Whichever [`EmitterAs`] is chosen, `emission`, `background`, and the direct and indirect light of all
-/// kinds add up to the whole image.
+/// Name and text of each built-in expression, after the renderer Arnold. "direct" is light that is scattered once on
+/// its way from a source to the camera. A source is a light, the environment or an emissive surface. "specular" is
+/// glossy and mirror reflection. Whichever [`EmitterAs`] is chosen, `emission`, `background`, and the direct and
+/// indirect light of all kinds add up to the whole image.
 pub const BUILT_IN: &[(&str, &str)] = &[
     ("RGBA", "C.*"),
     ("beauty", "C.*"),

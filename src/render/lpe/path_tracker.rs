@@ -2,10 +2,10 @@
 //! component is a state of the automaton with its share of the path's light.
 //!
 //! A sample at a surface with a diffuse and a glossy layer stands for both layers, as it is weighted by the sum of the
-//! layers (Veach 1997, 9.2.4). A component therefore splits in two, in proportion to the values of the layers, channel
-//! by channel. Components with equal states are merged, so there are never more components than states. Components in
-//! the dead state are dropped. Once all components are in absorbing states, which scattering leaves unchanged, further
-//! scattering costs nothing.
+//! BSDF values of the two layers (Veach 1997, 9.2.4). A component therefore splits in two, in proportion to these
+//! values, channel by channel. Components with equal states are merged, so there are never more components than states.
+//! Components in the dead state are dropped. Once all components are in absorbing states, which scattering leaves
+//! unchanged, further scattering costs nothing.
 //!
 //! A subpath that several paths reuse is traced only once. It is tracked separately for each of its initial states:
 //! the states in which these paths may join it.
@@ -91,8 +91,8 @@ impl<'a> PathTracker<'a> {
         self.absorbing = origins.iter().all(|&state| self.automaton.is_absorbing(state));
     }
 
-    /// Continues along a recorded subpath: for each component (a state of the automaton with its share of the light),
-    /// adds the subpath's light, multiplied by `importance` and the share.
+    /// Continues along a recorded subpath: for each component, adds the light that the subpath has for the component's
+    /// state, multiplied by `importance` and the component's share.
     pub fn replay(&mut self, outcome: &[PathOutcome], importance: Vec3A) {
         for component in &self.components {
             replay_outcome(&mut self.sums, component.state, component.share * importance, outcome);
@@ -161,8 +161,8 @@ impl<'a> PathTracker<'a> {
         self.absorbing = components.iter().all(|component| automaton.is_absorbing(component.state));
     }
 
-    /// Adds the contribution of a light that the path has hit or that a light sample has found. Each component adds
-    /// its share to the list of expressions that accept the component's path.
+    /// Adds the contribution of a light that the path has hit or that a light sample has found. Each component adds its
+    /// share of the contribution to the sum of one list: the list of the expressions that accept the component's path.
     #[inline(always)]
     pub fn add(&mut self, world: &World, contribution: Vec3A, source: LightSource, strategy: Strategy) {
         let light = self.automaton.light(source);
@@ -185,7 +185,8 @@ impl<'a> PathTracker<'a> {
         }
     }
 
-    /// Adds a contribution to the sums of all components, to each in proportion to its share.
+    /// For each component, adds the contribution times the component's share to the sum of one list: the list of the
+    /// expressions that accept the component's path to the light event `light`.
     #[inline(never)]
     fn add_to_components(&mut self, light: usize, contribution: Vec3A) {
         let Self { automaton, components, sums, .. } = self;
@@ -222,9 +223,9 @@ impl<'a> PathTracker<'a> {
         }
     }
 
-    /// Adds the contribution of a light sample that reaches the vertex through panes. A component is a state of the
-    /// automaton with its share of the light. Each pane splits it: one part passes through the pane; if the opacity is
-    /// below 1, another part misses the pane.
+    /// Adds the contribution of a light sample that reaches the vertex through panes. Each pane splits every component
+    /// in two: one part of the component's light passes through the pane; if the pane's opacity is below 1, the
+    /// remainder misses the pane.
     #[inline(never)]
     fn connect_through_panes(&mut self, world: &World, light: usize, contribution: Vec3A, mesh: u32, lobes: Lobes) {
         let Self { automaton, components, before, ends, panes, sums, .. } = self;
@@ -259,16 +260,18 @@ impl<'a> PathTracker<'a> {
         }
     }
 
-    /// Ends the path. Calls `take` with the index and the value of each sum of light to which the path contributes. The
-    /// sum of list `l`, for the initial state at position `s` of those given, has the index `s × lists + l`. A path
-    /// from the camera has one initial state, so its index is `l`.
+    /// Ends the path. Calls `take` with the index and the value of each sum of light to which the path contributes. Let
+    /// n be the number of lists of expressions. The sum of list `l`, for the initial state at index `s` of the states
+    /// given to [`Self::start_from`], has the index `s × n + l`. A path from the camera has one initial state, so the
+    /// index of its sum is `l`.
     #[inline]
     pub fn end(&mut self, take: impl FnMut(usize, Vec3A)) {
         self.flush_rest();
         self.sums.drain(take);
     }
 
-    /// Ends a subpath. Stores in `outcome` its light for each initial state and each list of expressions.
+    /// Ends a subpath. Stores in `outcome` the light of the subpath for each initial state and each list of
+    /// expressions. `origins` are the initial states that [`Self::start_from`] was given.
     pub fn end_from(&mut self, origins: &[u16], outcome: &mut Vec<PathOutcome>) {
         let lists = self.automaton.lists().len();
         outcome.clear();

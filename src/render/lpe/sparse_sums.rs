@@ -1,4 +1,5 @@
-//! An array of light sums of which each path changes only a few, so that clearing it is cheap.
+//! An array of light sums. Each path changes only a few of the sums; these are marked, so that clearing the array is
+//! cheap.
 
 use glam::Vec3A;
 
@@ -26,7 +27,7 @@ impl SparseSums {
         self.touched[number / 64] |= 1 << (number % 64);
     }
 
-    /// Calls `take` with each changed sum, in the order of the indices, and clears the sums.
+    /// Calls `take` with the index and the value of each changed sum, in the order of the indices, and clears the sums.
     #[inline]
     pub fn drain(&mut self, mut take: impl FnMut(usize, Vec3A)) {
         for (word, bits) in self.touched.iter_mut().enumerate() {

@@ -6,8 +6,8 @@ const MIN_EXPECTED: f64 = 10.0;
 const CHANCE: f64 = 1e-3;
 
 /// Asserts that the observed counts of all bins follow the expected counts. The test is one of `tests` tests; the
-/// probability that any of these fails by chance is 1/1000 (Šidák 1967). The bins must cover the whole sample space,
-/// so that the sums of both counts are equal up to quadrature errors.
+/// probability that any of these fails by chance is 1/1000 (Šidák 1967). The bins must cover the whole sample space, so
+/// that the sum of the expected counts equals the sum of the observed counts up to quadrature errors.
 pub(in crate::render) fn assert_follows(expected: &[f64], observed: &[f64], tests: usize, what: &str) {
     let bins = pooled(expected, observed);
     let (total, seen) = bins.iter().fold((0.0, 0.0), |(e, o), bin| (e + bin.0, o + bin.1));

@@ -206,13 +206,14 @@ fn surfaces_in_the_same_place_are_one_or_the_other() {
     let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, 1.0);
     let film = |materials| render(&world(scene(materials)), &camera, &SMALL());
     let both = film([0, 1]).beauty;
-    // Each path hits one of the two coincident surfaces, and neither surface shadows the other. Each pixel therefore
-    // lies between its values in the renders of either surface alone, which have the same paths.
+    // Each path hits one of the two coincident surfaces, and neither surface shadows the other. The value of each pixel
+    // therefore lies between its values in two renders with the same paths: one with two dark surfaces, one with two
+    // bright surfaces.
     let (dark, bright) = (film([0, 0]).beauty, film([1, 1]).beauty);
     for ((&d, &v), &b) in dark.data.iter().zip(&both.data).zip(&bright.data) {
         assert!(v >= d * 0.99999 && v <= b * 1.00001, "{d} {v} {b}");
     }
-    // The dark surface alone reflects a fifth of the light of the sky, the bright surface alone four fifths.
+    // The dark surfaces reflect a fifth of the light of the sky, the bright surfaces four fifths.
     for (image, albedo) in [(&dark, 0.2), (&bright, 0.8)] {
         let mean = image.data.iter().map(|&v| f64::from(v)).sum::<f64>() / image.data.len() as f64;
         assert!((mean / albedo - 1.0).abs() < 0.01, "{mean} of {albedo}");

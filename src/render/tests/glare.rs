@@ -147,7 +147,8 @@ fn the_background_is_the_indirect_illuminance() {
     assert!(off.abs() < 4.0 * error + 2e-3 * direct && error < 0.02 * total.mean, "{off} ± {error}");
 }
 
-/// All coordinates are multiples of 1/8 m, which f32 represents exactly at both places.
+/// The rating of a room far from the origin equals that of the same room at the origin. All coordinates are multiples
+/// of 1/8 m, which f32 represents exactly in both rooms.
 #[test]
 fn a_room_in_map_coordinates_rates_as_at_the_origin() {
     let shift = Vec3::new(524_288.0, 0.0, -1_048_576.0);
@@ -238,8 +239,9 @@ fn shining_room(mesh: Mesh, luminance: f32) -> Scene {
     scene
 }
 
-/// A square panel of 0.3 m as a mesh and as a luminaire from a file, 3 m ahead and 1.5 m above the eye, where its size
-/// changes the position index and the solid angle of CIE 117 by less than 0.3 %.
+/// Compares a square panel of 0.3 m as a mesh with the same panel as a luminaire from a file. The panel lies 3 m ahead
+/// of the eye and 1.5 m above it. There, its extent changes the position index and the solid angle of CIE 117 by less
+/// than 0.3 %.
 #[test]
 fn a_panel_as_a_mesh_rates_as_the_panel_of_a_file() {
     let side = 0.3f32;
@@ -260,8 +262,8 @@ fn a_panel_as_a_mesh_rates_as_the_panel_of_a_file() {
     let half = f64::from(side) / 2.0;
     let exact = 2.0 * (corner_solid_angle(half, 3.0 + half, 1.5) - corner_solid_angle(half, 3.0 - half, 1.5));
     assert!((b.solid_angle / exact - 1.0).abs() < 0.01, "{b:?} {exact}");
-    // The position index is that of the middle of the solid angle, a little nearer than the middle of the panel. Add up
-    // the directions to 100 × 100 cells, weighted by their solid angles cos γ / r².
+    // The position index is that of the middle of the solid angle, which lies a little nearer to the eye than the
+    // middle of the panel. Add up the directions to 100 × 100 cells, weighted by their solid angles cos γ / r².
     let cell = |i: usize| half * ((i % 100) as f64 / 50.0 - 0.99);
     let cells = (0..10_000).map(|i| DVec3::new(cell(i), 1.5, cell(i / 100) - 3.0));
     let middle = cells.map(|d| d / d.length().powi(4)).sum::<DVec3>();
@@ -279,8 +281,8 @@ fn a_panel_as_a_mesh_rates_as_the_panel_of_a_file() {
     assert!(rated(shining_room(turned, 1000.0), EYE, 64).sources.is_empty());
 }
 
-/// A profile of 30 mm, 5 m ahead, is a third as wide as a cell of the raster. It has its whole solid angle, across the
-/// view as well as along it.
+/// A profile of 30 mm, 5 m ahead, is a third as wide as a cell of the raster. The rating still finds its whole solid
+/// angle, whether the profile runs across the view or along it.
 #[test]
 fn a_narrow_profile_is_seen_as_a_whole() {
     let (narrow, long, above) = (0.03f32, 3.0f32, 1.5);
@@ -311,7 +313,7 @@ fn a_sphere_of_uniform_radiance_has_its_closed_form() {
         let [source] = whole.sources[..] else { panic!("{whole:?}") };
         assert!((source.luminance / 3000.0 - 1.0).abs() < 1e-5, "{source:?}");
         assert!((source.solid_angle / exact - 1.0).abs() < 0.015, "{diameter}: {source:?} {exact}");
-        // The middle is seen straight ahead and up, at the angle σ with tan σ = 1 / 3.
+        // The centre of the sphere is straight ahead and up, at the angle σ from the line of sight with tan σ = 1 / 3.
         let sigma = (1.0f64 / 3.0).atan().to_degrees();
         let index = (33.98e-3 * sigma + 21e-5 * sigma * sigma).exp();
         assert!((source.position_index / index - 1.0).abs() < 0.01, "{source:?} {index}");
@@ -378,8 +380,8 @@ fn pictures_rate_as_the_luminaires_in_them() {
         let scene = room(luminaire, &places);
         let rating = rated(scene.clone(), EYE, 1 << 13);
         let camera = Camera { position: EYE.position, ..Camera::look_at(Vec3::ZERO, EYE.direction, 2.4) };
-        // One path per pixel, so that a pixel shows a lamp or does not: a mean over the edge of a lamp loses light,
-        // because luminances count squared.
+        // Trace one path per pixel, so that each pixel shows either a lamp or none. With several paths, pixels at the
+        // edge of a lamp would show a mean luminance, whose square is too small.
         let params = crate::render::Params { width: 1000, height: 1000, samples: 1, ..Default::default() };
         let film = Pool::new(2).unwrap().run(|| render(&world(scene), &camera, &params));
         let seen = glare::rate(&film.beauty, &glare::Params { fov_y: 2.4, threshold: 1300.0 }).unwrap();

@@ -25,7 +25,7 @@ fn few(samples: u32) -> Params {
     Params { planes: 8, angles: 19, samples, ..Params::default() }
 }
 
-/// A square of this side that faces down.
+/// A square that faces down; `side` is the length of its sides.
 fn panel(centre: Vec3, side: f32) -> Mesh {
     Mesh::parallelogram(centre - Vec3::new(side, 0.0, side) / 2.0, Vec3::X * side, Vec3::Z * side, 0)
 }
@@ -39,8 +39,8 @@ fn disc(centre: Vec3, diameter: f64) -> Mesh {
     Mesh { positions, triangles: faces.triangles, ..Mesh::default() }
 }
 
-/// The four walls of a box of this side and height, and its top a little above the walls' upper edges. Its open end is
-/// below.
+/// A box that is open below: four walls over a square of width `side`, with the height `height`, and a top. The top
+/// lies a little above the upper edges of the walls.
 fn shade(centre: Vec3, side: f32, height: f32) -> Mesh {
     let (low, x, y, z) =
         (centre - Vec3::new(side, 2.0 * height, side) / 2.0, Vec3::X * side, Vec3::Y * height, Vec3::Z * side);
@@ -80,7 +80,7 @@ fn a_lambertian_disc_has_its_cosine() {
         let off = value - peak * l.gammas[i % 19].to_radians().cos().max(0.0);
         assert!(off.abs() < 4.0 * output.intensity_error + 1e-3, "{off} of {value} at {}", l.gammas[i % 19]);
     }
-    // The flux is that of the cosine, interpolated between the angles.
+    // The flux equals that of the cosine distribution, interpolated between the angles γ.
     let cosine = Luminaire {
         candela: l.gammas.iter().map(|g| peak * g.to_radians().cos().max(0.0)).collect(),
         planes: vec![0.0],
@@ -109,8 +109,8 @@ fn a_uniform_sphere_is_constant() {
     assert!(l.size.iter().all(|side| (side + 0.3).abs() < 1e-3), "{:?}", l.size);
 }
 
-/// Returns the share of the light of a Lambertian square that reaches an equal, parallel square opposite to it at this
-/// multiple of its side.
+/// Returns the form factor between two equal, parallel squares that face each other, from one to the other. `distance`
+/// is the distance between them, as a multiple of their side.
 fn opposite_squares(distance: f64) -> f64 {
     let x = 1.0 / distance;
     let root = (1.0 + x * x).sqrt();
@@ -165,8 +165,9 @@ fn lux(scene: Scene, at: Vec3) -> (f64, f64) {
     (output.mean, output.mean_error)
 }
 
-/// The distribution of a lamp with a black shade, written to a file and read back, lights points far away as the lamp
-/// does. (A white shade would light them by paths that few rays from the points find.)
+/// The distribution of a lamp with a black shade is written to a file and read back. Far away, a luminaire with this
+/// distribution gives the same illuminance as the lamp. (From a white shade, light would reach the points by paths that
+/// few rays from the points find.)
 #[test]
 fn a_written_distribution_lights_as_the_body() {
     let centre = Vec3::new(0.5, 12.0, -0.5);
@@ -191,8 +192,8 @@ fn a_written_distribution_lights_as_the_body() {
             let offset = (at - output.position).as_dvec3();
             let error =
                 lamp_error.hypot(file_error).hypot(output.intensity_error * -offset.y / offset.length().powi(3));
-            // At 12 m, 60 times its size, the lamp is far away: seen from its two edges, the shade hides parts of the
-            // panel that differ by less than 1 %.
+            // At a distance of 12 m, 60 times the size of the lamp, the far field holds: the part of the panel that the
+            // shade hides differs by less than 1 % between the directions of the lamp's two edges.
             assert!(
                 (of_file - of_lamp).abs() < 4.0 * error + 0.01 * of_lamp && error < 0.02 * of_lamp,
                 "{format:?} at {at}: {of_file} {of_lamp} ± {error}"
@@ -222,7 +223,7 @@ fn the_axes_and_the_lit_part_are_those_of_the_luminaire() {
         "{off} ± {}",
         output.intensity_error
     );
-    // In the coordinates of a map, the result is that of the origin.
+    // In the coordinates of a map, the lamp has the same flux as at the origin, up to rounding.
     let shift = Vec3::new(524_288.0, 0.0, -1_048_576.0);
     lamp.meshes[0].positions.iter_mut().for_each(|p| *p += shift);
     let away = run(&lamp, &params).unwrap();

@@ -87,7 +87,7 @@ impl<'a> Strided<'a> {
     }
 }
 
-/// Returns the integer that represents 1 if integers of this type are normalised.
+/// Returns the integer by which a normalised integer of this type is divided; 1 for floats.
 fn largest_of(kind: ComponentType) -> f32 {
     match kind {
         ComponentType::I8 => 127.0,
@@ -131,7 +131,8 @@ pub fn components(file: &File, index: Index<accessor::Accessor>) -> Result<usize
     Ok(storage(find(file, index)?)?.1)
 }
 
-/// If an accessor holds normalised integers, returns the integer that represents 1; otherwise returns `None`.
+/// Returns the integer that stands for the value 1 if an accessor holds normalised integers; `None` for other
+/// accessors.
 pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f32>> {
     let accessor = find(file, index)?;
     let (kind, _) = storage(accessor)?;

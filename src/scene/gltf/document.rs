@@ -9,7 +9,7 @@ use glam::DVec3;
 use gltf::json::Root;
 use serde_json::{Map, Number, Value, json};
 
-/// `f64` represents every integer up to this one, 2^53. [rounding]
+/// Largest integer up to which `f64` represents every integer exactly: 2^53. [rounding]
 const MAX_INTEGER: f64 = 9_007_199_254_740_992.0;
 
 /// The JSON of a file as the crate `gltf` represents it, and information that this representation lacks.
@@ -94,8 +94,8 @@ fn tidy(value: &mut Value) {
     }
 }
 
-/// Adds members that a glTF file may omit but that the crate `gltf` requires. Removes the animations: they are not
-/// read, and their targets may lack such members.
+/// Adds members that a glTF file may omit but that the crate `gltf` requires. Removes the animations: the importer does
+/// not read them, and their targets may lack members that the crate requires.
 fn complete(root: &mut Map<String, Value>) {
     root.remove("animations");
     for scene in objects(root, "scenes") {

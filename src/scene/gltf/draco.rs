@@ -16,7 +16,8 @@ use serde_json::Value;
 const VERTEX_BYTES: u64 = 256;
 const TRIANGLE_BYTES: u64 = 256;
 
-/// Bytes that decoding takes per attribute component: for the integer and for the value made from it.
+/// Bytes of memory that decoding takes per attribute component: for the decoded integer, and for the value computed
+/// from this integer.
 const COMPONENT_BYTES: u64 = 16;
 
 /// A decoded primitive.

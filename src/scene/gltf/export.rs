@@ -298,7 +298,7 @@ impl Writer {
         Ok(info)
     }
 
-    /// Writes an image with its own texture and sampler. All three have the same index in their lists.
+    /// Writes an image with its own texture and sampler. Image, texture and sampler have the same index in their lists.
     fn image(&mut self, scene: &Scene, key: ImageKey) -> Result<usize> {
         let (index, encoding, peak) = key;
         let texture = &scene.textures[index];

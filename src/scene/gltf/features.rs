@@ -138,8 +138,8 @@ fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
         Value::Array(numbers) => numbers.iter().all(|number| number.as_f64() == Some(wanted)),
         value => value.as_f64() == Some(wanted),
     };
-    // A texture is multiplied by its factor. With a default factor of 0 the texture has no effect; with a default
-    // factor of 1 it has an effect.
+    // A texture is multiplied by its factor, which has its default value here. With a default of 0 the texture has no
+    // effect; with a default of 1 it has an effect.
     let has_texture = || settings.as_object().is_some_and(|s| s.keys().any(|key| key.ends_with("Texture")));
     let is_factor = neutral.iter().any(|&(_, wanted)| wanted != 0.0);
     !neutral.is_empty()

@@ -109,7 +109,7 @@ struct Importer<'a> {
 #[derive(Clone, Copy)]
 struct Placement<'a> {
     transform: DMat4,
-    /// The skin, if any. The transforms of its joints then replace `transform`.
+    /// The skin; `None` for a mesh without a skin. The transforms of the skin's joints replace `transform`.
     skin: Option<Index<Skin>>,
     /// Weights of the mesh's morph targets.
     weights: &'a [f32],
@@ -300,9 +300,9 @@ impl Importer<'_> {
         Ok(Posed { positions, normals, is_mirrored })
     }
 
-    /// Adds the vertices and triangles of a primitive, including its morph targets, to the totals. Returns an error if
-    /// a total exceeds its limit. Call it before the primitive is allocated: with instances, a small file can produce
-    /// huge meshes.
+    /// Adds the vertices and triangles of a primitive, including its morph targets, to the totals of the scene. Returns
+    /// an error if a total exceeds its limit. Call it before the primitive's memory is allocated: with instances, a
+    /// small file can produce huge meshes.
     fn reserve(
         &mut self,
         positions: Index<json::Accessor>,

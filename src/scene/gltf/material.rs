@@ -12,8 +12,9 @@ use gltf::json::extensions::material::PbrSpecularGlossiness;
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index, extensions, material, texture};
 
-/// Identifies the encoded bytes of an image. Exporters often write several images that share one buffer view. Such
-/// images have the same source, so that textures with equal encoding and wrap modes are decoded only once ([`Key`]).
+/// Identifies the encoded bytes of an image. Exporters often write several images that share one buffer view; all of
+/// these images have the same source. Textures of equal source, encoding and wrap modes are therefore decoded only once
+/// ([`Key`]).
 #[derive(Clone, Copy, PartialEq)]
 enum Source {
     View(usize),

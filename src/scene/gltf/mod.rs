@@ -53,10 +53,10 @@ use std::path::Path;
 
 /// Limits the memory of an import. An error from either method aborts the import.
 pub trait Budget {
-    /// Called before each mesh and each texture is allocated, with its size in bytes.
+    /// Is called before the memory of a mesh or a texture is allocated. `bytes` is the size of the mesh or texture.
     fn keep(&self, bytes: u64) -> Result<()>;
 
-    /// Runs `work`, which needs `bytes` of temporary memory while it runs.
+    /// Runs `work`, which needs `bytes` of temporary memory until it returns.
     fn lend(&self, bytes: u64, work: &mut dyn FnMut() -> Result<()>) -> Result<()>;
 }
 

@@ -6,10 +6,10 @@ use glam::{DVec2, DVec3};
 /// Cosine of 1°. If the axes of the smallest rectangle differ by less than this angle from the axes aligned with the
 /// world, the aligned axes are used instead. [convention]
 const COS_SNAP: f64 = 0.999_847_695;
-/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. A rectangle that
-/// is turned by an angle θ is smaller than the aligned one around it by at least the share sin 2θ / (1 + sin 2θ), which
-/// is 3.4 % at the 1° of `COS_SNAP`. So any value from 1e-5, above the rounding of f32, to 0.03 gives the same result
-/// for rectangles. [convention]
+/// A rotated rectangle replaces the aligned one only if its area is smaller by more than this share. For a surface that
+/// is itself a rectangle, turned by an angle θ, the rotated rectangle is smaller than the aligned one by at least the
+/// share sin 2θ / (1 + sin 2θ). This is 3.4 % at the 1° of `COS_SNAP`. So any value from 1e-5, above the rounding of
+/// f32, to 0.03 gives the same result for such surfaces. [convention]
 const MIN_SAVING: f64 = 1e-3;
 /// A plane is a wall if the magnitude of the vertical component of its unit normal is below this value, the cosine of
 /// 45°. [convention]
@@ -66,8 +66,8 @@ pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Boundi
     BoundingRectangle { origin: centre + u * low.x + v * low.y, u, v, size: high - low }
 }
 
-/// Returns the u axis of the bounding rectangle of minimum area. Of the four directions of its sides, this is the one
-/// that differs from `upright` by at most 45°. One side of this rectangle lies along an edge of the convex hull
+/// Returns the u axis of the bounding rectangle of minimum area. Of the four directions of the rectangle's sides, it is
+/// the one that differs from `upright` by at most 45°. A side of the rectangle lies along an edge of the convex hull
 /// (Freeman and Shapira 1975).
 fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> DVec3 {
     let v = down_of(upright, normal);

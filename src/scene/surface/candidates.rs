@@ -99,8 +99,8 @@ struct Sums {
     triangles: usize,
     area: f64,
     level_area: f64,
-    /// Sums of area × height of the centre, over all triangles (`moment`) and over the level triangles
-    /// (`level_moment`).
+    /// Sums over triangles of the triangle's area times the height of its centre: over all triangles (`moment`), and
+    /// over the level triangles (`level_moment`).
     moment: f64,
     level_moment: f64,
     /// Sum of the triangles' normals, each as long as the triangle's area.

@@ -18,8 +18,8 @@ const CORNERS: [&str; 3] = ["wan", "ran", "bil"];
 
 /// Whether a name contains a word for a ceiling.
 pub fn is_ceiling(name: &str) -> bool {
-    // `letters` joins the words of the name up to the current one. "Bett_Decke" becomes "bettdecke", which is a
-    // blanket.
+    // `letters` joins the words of the name up to the current word, because a compound may be split into words:
+    // "Bett_Decke" becomes "bettdecke", which is a blanket.
     let mut letters = String::new();
     words(name).split_whitespace().any(|word| {
         letters.push_str(word);

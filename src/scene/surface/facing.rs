@@ -97,7 +97,7 @@ fn mean_clear_distance(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: D
     seen / RAYS as f64
 }
 
-/// Up to [`CHUNK`] consecutive triangles of one mesh, with their common bounding box. The box is small, because
+/// Up to [`CHUNK`] consecutive triangles of one mesh, with their common bounding box. The box is mostly small, because
 /// triangles that are neighbours in a file are mostly neighbours in space.
 struct Chunk {
     mesh: usize,

@@ -84,8 +84,8 @@ fn corners(scene: &Scene, triangles: &[(usize, usize)]) -> Result<Vec<DVec3>> {
 /// The names are searched in three steps, and in each step first the objects, then the materials:
 ///
 /// 1. a name equal to the given name,
-/// 2. a name equal to it if upper and lower case are ignored,
-/// 3. a name that contains the given name, if there is only one; upper and lower case are ignored.
+/// 2. a name equal to the given name if upper and lower case are ignored,
+/// 3. a name that contains the given name if upper and lower case are ignored; several such names are an error.
 ///
 /// The scene must be valid. Errors: `NotFound`, listing the existing names; `Degenerate` if the object has no area.
 pub fn find(scene: &Scene, name: &str) -> Result<Surface> {

@@ -6,14 +6,15 @@ use crate::scene::Scene;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Cosine of 2°, the maximum angle between the normals of a triangle and of its plane. The sides of a cylinder with 64
-/// sides differ by 5.6°; up to an angle of 2.8°, no two of them belong to one plane. From 0.6° on, the angle admits a
-/// triangle that is 1/20 as long as the object and whose corners are off by [`OFFSET`]. [convention]
+/// Cosine of 2°, the maximum angle between the normals of a triangle and of its plane. Neighbouring sides of a cylinder
+/// with 64 sides differ by 5.6°; with a maximum angle of up to 2.8°, no two of them belong to one plane. With a maximum
+/// angle of 0.6° or more, a plane accepts a triangle that is 1/20 as long as the object and whose corners are off by
+/// [`OFFSET`]. [convention]
 const COS_ANGLE: f64 = 0.999_390_827;
 /// Tolerance of planes, relative to the diagonal of the object's bounding box: corners lie within twice this distance
-/// of their plane. In a room of 10 m, the tolerance is 5 mm. From 0.6 mm per m of the diagonal on, the two faces of a
-/// board of 12 mm would be one plane in such a room. Any smaller value down to 1e-6 is far above the rounding of
-/// positions in f32, and suffices for planes that are modelled exactly. [convention]
+/// of their plane. In a room of 10 m, the tolerance is 5 mm. If the tolerance were 0.6 mm or more per metre of the
+/// diagonal, the two faces of a board of 12 mm would be one plane in such a room. Any smaller value down to 1e-6 is far
+/// above the rounding of positions in f32, and suffices for planes that are modelled exactly. [convention]
 const OFFSET: f64 = 5e-4;
 /// Side of a cell in the grid of unit normals: the angle of [`COS_ANGLE`] in radians. [convention]
 const DIRECTION_CELL: f64 = 0.035;

@@ -42,10 +42,10 @@ use regions::{Brightness, Regions, level};
 use similar::{Search, Similar};
 use tree::Tree;
 
-/// The darkest pixels under the strokes, up to this share, do not count when the least brightness of the lamps is
+/// Share of the pixels under the strokes, the darkest ones, that are ignored when the least brightness of the lamps is
 /// determined: hurried strokes run over the edges of lamps. [judged on 28 photos]
 const STROKE_EDGE: f64 = 0.1;
-/// This quantile of L*, over the pixels under the positive strokes, is taken for white. [judged on 44 photos]
+/// White is this quantile of L* over the pixels under the positive strokes. [judged on 44 photos]
 const WHITE: f64 = 0.9;
 /// Lower bound of the L* that is taken for white. It corresponds to a luminance of 1e-5 relative to display white.
 /// Strokes with a lower L* lie on black and mark no lamp. [convention]
@@ -155,7 +155,7 @@ fn white(features: &Image, examples: &[Vec<u32>]) -> Result<f32> {
     Ok(white.max(MIN_WHITE))
 }
 
-/// The level of brightness below which no contour is sought.
+/// Returns the brightness level below which no contour is sought.
 fn floor(photo: &Brightness, examples: &[Vec<u32>]) -> u16 {
     let mut lightness: Vec<f32> = Vec::new();
     for stroke in examples {

@@ -33,14 +33,15 @@ const ON_PLANE: f64 = 0.6;
 const NEARLY_BEST: f64 = 0.4;
 /// Exponent of a region's area in its score. [bench photos:nostrokes]
 const AREA_POWER: f64 = 0.25;
-/// Maximum width in pixels of the edge of a lamp: its contrast to the ring of pixels around it, divided by its contour
-/// gradient. The light that a lamp throws on its ceiling has wider edges. [bench photos:nostrokes]
+/// Maximum width in pixels of a lamp's edge. The width is the contrast between the lamp and the ring of pixels around
+/// it, divided by the lamp's contour gradient. The light that a lamp throws on its ceiling has wider edges.
+/// [bench photos:nostrokes]
 const MAX_EDGE: f64 = 5.5;
 /// A further kind of lamps is accepted if it has at least two lamps, and their total score is at least this share of
 /// the total score of the first kind. [bench photos:nostrokes]
 const FURTHER_KIND: f64 = 0.3;
-/// Regions are no proposal if the lamps of the first kind have less than this share of the total score of all regions:
-/// then the regions are unlike each other. [bench photos:nostrokes]
+/// Nothing is proposed if the lamps of the first kind have less than this share of the total score of all regions: the
+/// regions are then too unlike each other. [bench photos:nostrokes]
 const MIN_SHARE: f64 = 0.35;
 
 /// Only this number of regions with the highest scores are compared with each other, because photos of noise have very
@@ -145,7 +146,8 @@ struct Shape {
 }
 
 impl Shape {
-    /// Whether another region is of this region's kind.
+    /// Whether another region is of this region's kind: similar in area, aspect, a* and b*. If the photo's border cuts
+    /// the other region but not this one, the aspect is not compared, and the other region may be of any smaller area.
     fn is_like(&self, other: &Self) -> bool {
         let [_, a, b] = [0, 1, 2].map(|c| self.colour[c] - other.colour[c]);
         let has_size = match other.is_cut && !self.is_cut {

@@ -39,17 +39,17 @@ pub struct Brightness {
 const LINEAR_L: f32 = 8.0;
 const SLOPE: f32 = 24389.0 / 27.0;
 
-/// The luminance that belongs to an L*, relative to white.
+/// Returns the luminance, relative to white, of an L*.
 fn luminance(l: f32) -> f32 {
     if l > LINEAR_L { ((l + 16.0) / 116.0).powi(3) } else { l.max(0.0) / SLOPE }
 }
 
-/// The L* that belongs to a luminance relative to white.
+/// Returns the L* of a luminance, which is relative to white.
 fn lightness(y: f32) -> f32 {
     if y > LINEAR_L / SLOPE { 116.0 * y.cbrt() - 16.0 } else { y * SLOPE }
 }
 
-/// The brightness level of an L*, not rounded.
+/// Returns the brightness level of an L*, not rounded.
 pub fn level(l: f32) -> f32 {
     let above = if l > 100.0 { LEVELS_PER_DOUBLING * (l / 100.0).log2() } else { 0.0 };
     (l.clamp(0.0, 100.0) * LEVELS_PER_L + above).min(MAX_LEVEL)
@@ -141,8 +141,9 @@ impl OnFace {
         Ok(sums)
     }
 
-    /// Whether two nodes lie in a row along u or along v, the axes of the room's face. For a row along u, their centres
-    /// must differ in v by at most `share` times the larger of their extents in v.
+    /// Whether two nodes lie in a row along u or along v, the axes of the room's face. They lie in a row along u if
+    /// their centres differ in v by at most `share` times the larger of their extents in v; likewise with u and v
+    /// exchanged.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
         self.across(a, b)
             .into_iter()
@@ -157,9 +158,9 @@ impl OnFace {
         })
     }
 
-    /// Centres and extents of two nodes, across a row along v and across a row along u. A strip of width w has the
-    /// variance w² / 12. The variance within a pixel is a twelfth of its area; take the mean over the pixels, weighted
-    /// by area.
+    /// Returns the centres and extents of two nodes, as (centre, extent) for each node: first in u, which is across a
+    /// row along v, then in v. The extent is the width w of a strip with the node's variance w² / 12. The variance
+    /// within a pixel, a twelfth of its area, is added; it is the mean over the node's pixels, weighted by area.
     fn across(&self, a: usize, b: usize) -> [[(f64, f64); 2]; 2] {
         [(&self.u, &self.uu), (&self.v, &self.vv)].map(|(first, second)| {
             [a, b].map(|node| {
@@ -178,8 +179,8 @@ impl OnFace {
         let mean = |sums: &[f64]| sums[node] / area;
         let (u, v) = (mean(&self.u), mean(&self.v));
         let moments = [mean(&self.uu) - u * u, mean(&self.vv) - v * v, mean(&self.uv) - u * v];
-        // Add the variance within a pixel. In a square it is a twelfth of the area; take the mean over the pixels,
-        // weighted by area.
+        // Add the variance within a pixel, which is a twelfth of the area of a square pixel: the mean over the node's
+        // pixels, weighted by area.
         let [long, short] = ellipse(moments, mean(&self.squares) / 12.0);
         long / short.max(f64::MIN_POSITIVE)
     }

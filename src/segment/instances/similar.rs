@@ -13,18 +13,19 @@ use std::ops::RangeInclusive;
 
 /// Maximum amount by which a lamp may be darker than the darkest lamp under a stroke, in L*. [judged on 28 photos]
 const DIMMER: f64 = 4.0;
-/// The same if the lamps are proposed: the brightest lamps are proposed first, while a user's strokes also lie on
-/// dimmer ones. [bench photos:nostrokes]
+/// Maximum amount by which a lamp may be darker than the darkest proposed lamp, in L*, if lamps are proposed. It is
+/// larger than `DIMMER`: the brightest lamps are proposed first, while a user's strokes also lie on dimmer lamps.
+/// [bench photos:nostrokes]
 const DIMMER_PROPOSED: f64 = 8.0;
 /// Maximum distance of a lamp's colour from the most similar colour of a lamp under a stroke, in a* and b*.
 /// [judged on 28 photos]
 pub const CHROMA: f64 = 12.0;
 /// Minimum contour gradient of a lamp ([`Regions::contour_gradient`]), relative to the median contour gradient of the
-/// lamps under the strokes; both are first divided by their `sharpness`. The limit is below 1 because distant lamps are
-/// small and blurred. [judged on 28 photos]
+/// lamps under the strokes. The gradient of each lamp is first divided by the lamp's [`sharpness`]. The limit is below
+/// 1 because distant lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
 /// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps under
-/// the strokes; both are first divided by their `sharpness`. [judged on 28 photos]
+/// the strokes. The contrast of each lamp is first divided by the lamp's [`sharpness`]. [judged on 28 photos]
 const RING: f64 = 0.5;
 /// Minimum ratio of a lamp's solidity (see `Regions::solidity`) to the least solidity of the lamps under the strokes.
 /// [judged on 28 photos]
@@ -44,8 +45,8 @@ const MAX_FACE_AREA_RATIO: f64 = 4.0;
 /// lamps along the line of sight. [bench photos:tune]
 const ROUNDER: f64 = 4.0;
 const LONGER: f64 = 2.5;
-/// A lamp under a stroke is measured if its number of pixels is at least this share of that of the largest lamp under a
-/// stroke. Smaller lamps do not count in the limits of area and aspect on the plane. [judged on 44 photos]
+/// A lamp under a stroke counts in the limits of area and aspect on the plane only if it has at least this share of the
+/// number of pixels of the largest lamp under a stroke. [judged on 44 photos]
 const MIN_MEASURED_SHARE: f64 = 0.01;
 /// Maximum ratio of a lamp's breadth (short axis of its ellipse, in pixels) to the breadth of the broadest lamp under a
 /// stroke. It applies only if the room has no box layout. [judged on 28 photos]
@@ -53,7 +54,8 @@ const MAX_BREADTH_RATIO: f64 = 1.5;
 /// Minimum area on the plane of a lamp that the photo's border cuts, relative to the minimum area of a whole lamp.
 /// [bench photos:tune]
 const MIN_CUT_AREA: f64 = 0.06;
-/// A region lies on the plane if at least this share of the ring of pixels around it does. [judged on 28 photos]
+/// A region lies on the plane if at least this share of the ring of pixels around it lies on the plane.
+/// [judged on 28 photos]
 const ON_PLANE: f64 = 0.5;
 /// A region in a hole of the plane's mask must have at least this share of its pixels on the face of the room that
 /// holds the lamps. [bench photos:tune]
@@ -102,7 +104,8 @@ struct Limits {
     dimmer: f64,
 }
 
-/// Limits for any region: the minima of the model as they are, no pixel under negative strokes, any size. [convention]
+/// Limits for any region: the limits of [`LampLimits`] unchanged, no pixel under negative strokes, any number of
+/// pixels. [convention]
 const STRICT: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 0.0, area: 1.0, dimmer: 0.0 };
 /// Limits for a region with the size and shape of a lamp that is found already. Bloom on a bright ceiling lowers the
 /// contrast of lamps, and negative strokes painted in a hurry graze them. Regions of fewer than 30 pixels have no clear
@@ -111,8 +114,8 @@ const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0, ar
 /// Limits for a region that continues a row of lamps of equal width. Louvres make lamps dimmer the flatter one looks at
 /// them, so the far lamps of a row may be much darker than the near ones. [bench photos:nostrokes]
 const IN_LINE: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 30.0, area: 0.0, dimmer: 30.0 };
-/// Maximum difference of the widths of two such lamps, and maximum distance between their centres, both measured across
-/// the row, as a share of the larger width. [bench photos:nostrokes]
+/// Maximum difference of the widths of two lamps of a row, and maximum distance between their centres, both measured
+/// across the row, as a share of the larger width. [bench photos:nostrokes]
 const EQUAL_WIDTH: f64 = 0.15;
 
 /// Variance, in square pixels, of the blur of the photo plus the blur before the gradient is computed.
@@ -154,8 +157,8 @@ struct LampLimits {
     colours: Vec<[f64; 3]>,
     /// Median colours of the rings of pixels around the lamps under the strokes.
     rings: Vec<[f64; 3]>,
-    /// Minimum contour gradient and minimum contrast to the ring. Both hold for lamps so large that blur does not
-    /// reduce their contrast; for smaller lamps they are lowered.
+    /// Minimum contour gradient, and minimum contrast to the ring, of lamps so large that blur does not reduce their
+    /// contrast. For smaller lamps, these minima are multiplied by [`sharpness`].
     contour: f64,
     ring: f64,
 }
@@ -233,10 +236,11 @@ impl Search<'_> {
         Ok(similar)
     }
 
-    /// If the lamps are proposed, adds the regions that meet the limits [`IN_LINE`] and continue a row of lamps: they
-    /// are as wide across the row as a lamp that was found before, and have its shape unless the border cuts that lamp.
-    /// Doubtful regions are tried first. Regions off the plane are added to `beyond`, and are lamps only if they lie on
-    /// its face of the room. Regions that the border cuts are left out.
+    /// If the lamps are proposed, adds further regions that meet the limits [`IN_LINE`] and continue a row of lamps.
+    /// Such a region is as wide, across the row, as a lamp that was found before. It must also have the shape of this
+    /// lamp, unless the photo's border cuts the lamp. Doubtful regions are tried first. Regions off the plane are added
+    /// to `similar.beyond`; of these, only regions on the face of the room that holds the lamps also count as lamps.
+    /// Regions that the photo's border cuts are left out.
     fn add_in_line(
         &self,
         model: &LampLimits,
@@ -278,8 +282,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Whether a node that continues a row of `lamps` ([`Self::add_in_line`]) lies on the plane; `None` if it continues
-    /// no row.
+    /// Whether a node that continues a row of `lamps` ([`Self::add_in_line`]) lies on the plane. `None` if the node
+    /// continues no row, or does not meet the limits [`IN_LINE`].
     fn place_in_line<'a>(
         &self,
         model: &LampLimits,
@@ -463,8 +467,9 @@ impl Search<'_> {
         })
     }
 
-    /// Whether the lamps are proposed and a node is of the kind of none of them. A node that the border of the photo
-    /// cuts may be of any kind.
+    /// Whether the lamps are proposed and a node is unlike each of them: it is not of the same kind ([`is_of_kind`]).
+    /// False for a node that the photo's border cuts, because it may be of any kind. False also if the room has no box
+    /// layout.
     fn is_unlike_proposed(&self, proposed: &[u32], node: usize) -> bool {
         let Some(surface) = self.regions.surface.as_ref().filter(|_| self.is_proposed) else { return false };
         let size = |node: usize| [surface.area[node], surface.aspect(node)];

@@ -5,7 +5,8 @@ use super::tree::Tree;
 use crate::error::Result;
 use crate::image::{Image, try_push, try_vec};
 
-/// Number of pixels between the region and its ring; the blurred edge lies there. [convention]
+/// Width in pixels of the gap between the region and its ring. The gap holds the blurred edge of the region.
+/// [convention]
 const GAP: isize = 1;
 /// Width of the ring in pixels. [convention]
 const RING: isize = 3;

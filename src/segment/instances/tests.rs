@@ -299,7 +299,7 @@ fn a_lamp_in_a_row_with_others_beyond_the_plane_is_distinguished_from_a_window()
 
 #[test]
 fn without_strokes_lamps_beyond_the_plane_may_have_other_surroundings() {
-    // As above, but the ceiling beyond the mask is darker by 15 units of L*.
+    // As in the test above, but the ceiling beyond the mask is darker by 15 units of L*.
     let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();
     let rows = [[20, 20, 60, 32], [120, 20, 160, 32], [22, 70, 60, 81], [200, 66, 206, 106]];
     let mut features = features_with(&rows);
@@ -360,8 +360,9 @@ fn without_strokes_light_with_soft_edges_on_the_ceiling_is_no_lamp() {
 
 #[test]
 fn without_strokes_a_dim_lamp_that_continues_a_row_is_found_and_other_dim_regions_are_not() {
-    // Three lamps on a dark ceiling, and a region 22 units of L* darker than they: in their row, beside it, in it but
-    // wider, or beyond the plane.
+    // Three lamps on a dark ceiling, and a region that is darker than the lamps by 22 units of L*. In the first case,
+    // the region lies below the first lamp and continues a row. In the other cases, it lies beside this row, is wider
+    // than the lamp, or lies beyond the plane.
     let row = [[20, 20, 60, 32], [120, 20, 160, 32], [220, 20, 260, 32]];
     let lamps = |dim: [usize; 4], strokes: &[Stroke], plane_end: usize| {
         let mut features = features_with(&[&row[..], &[dim]].concat());

@@ -23,8 +23,9 @@ pub struct Stroke {
 }
 
 impl Stroke {
-    /// Returns the pixels of a `width × height` image whose centres lie within `radius` pixels of a polyline. `radius`
-    /// lies in `[1e-3, 4096]`. One point makes a dot. A stroke entirely off the image has no pixels.
+    /// Returns a stroke along a polyline: the pixels of a `width × height` image whose centres lie within `radius`
+    /// pixels of the polyline. `radius` lies in `[1e-3, 4096]`. One point makes a dot. A stroke entirely off the image
+    /// has no pixels.
     pub fn polyline(points: &[DVec2], radius: f64, positive: bool, width: usize, height: usize) -> Result<Self> {
         check_range("stroke radius", radius, 1e-3, 4096.0)?;
         if points.is_empty() || !points.iter().all(|p| p.is_finite()) {

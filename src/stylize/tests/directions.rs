@@ -67,7 +67,7 @@ fn only_the_pixels_that_may_be_used_decide() {
     let slopes = Guide { source: &thin, target: &thin, ..slopes };
     let output = stylise(&Input { normals: Some(slopes), ..input(&thin, &[guide(&thin, &thin)]) }, &Params::preview());
     assert_eq!(output.unwrap().report.normals_weight, 0.0);
-    // Normals of another size are an error, even where they could not be used.
+    // Normals of a wrong size are an error, even if the artwork is too small for the decision.
     let small = Image::new(24, 18, 3).unwrap();
     let wrong = Guide { source: &small, target: &normals, ..slopes };
     assert!(stylise(&Input { normals: Some(wrong), ..masked }, &Params::preview()).is_err());

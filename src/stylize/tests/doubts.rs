@@ -38,7 +38,7 @@ fn stains_and_two_paints_for_one_light_are_named_with_their_places_and_clean_art
     }
     let found = codes_and_places(&halves, &light);
     assert!(matches!(found[..], [(Code::AmbiguousPaint, Some(_))]), "{found:?}");
-    // A guide that distinguishes the halves resolves the doubt.
+    // A guide that distinguishes the left half from the right half resolves the doubt: each half then has one paint.
     let side = Image::from_fn(192, 144, |x, _| [f32::from(x < 96)]).unwrap();
     let guides = [guide(&light, &light), Guide { name: "side", range: Range::Data, ..guide(&side, &side) }];
     let params = Params { levels: 2, ..Params::fast() };
