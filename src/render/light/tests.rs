@@ -161,8 +161,7 @@ fn every_kind_of_light_is_sampled_with_the_stated_pdf() {
             }
             LightSource::Surface { .. } => {
                 counts[6] += 1.0;
-                // A sample on the lamp counts 1 / pdf, any other sample counts 0. The mean over all n samples estimates
-                // the lamp's solid angle.
+                // With 1 / pdf for a sample on the lamp and 0 for others, the mean estimates the lamp's solid angle.
                 surface += f64::from(1.0 / sample.pdf) / f64::from(n);
             }
             LightSource::Environment => {
@@ -400,8 +399,7 @@ fn discs_and_spheres_light_by_their_form_factors() {
     let measured = measure(over_floor(vec![disc], vec![matt(0.0, 1.0)]));
     assert_close(measured, PI / 5.0, 5e-5, "disc");
 
-    // A sphere of radius r = 1 m, whose centre is d = 3 m above the floor: E = π L r² / d². The facets of the mesh lie
-    // inside the sphere, so E of the mesh is up to 1 % smaller.
+    // A sphere, r = 1 m, at a height of d = 3 m: E = π L r² / d². Its facets lie inside, so E is up to 1 % smaller.
     let (rows, columns, centre) = (24, 48, Vec3::Y * 3.0);
     let at = |i: usize, j: usize| {
         let (polar, angle) = (PI as f32 * i as f32 / rows as f32, TAU * (j % columns) as f32 / columns as f32);
