@@ -172,6 +172,11 @@ impl OnFace {
         })
     }
 
+    /// Length of a node on the face of the room: the long side of the rectangle with the node's area and aspect.
+    pub fn length(&self, node: usize) -> f64 {
+        (self.area[node] * self.aspect(node)).sqrt()
+    }
+
     /// Aspect of a node, measured on the face of the room: the ratio of the axes of the ellipse with the node's second
     /// moments, at least 1.
     pub fn aspect(&self, node: usize) -> f64 {

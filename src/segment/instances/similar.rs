@@ -145,6 +145,17 @@ pub struct Similar {
     pub beyond: Vec<u32>,
 }
 
+impl Similar {
+    /// Moves the doubtful regions that `is_lamp` accepts to the lamps. `is_lamp` sees the lamps found so far.
+    fn retry_doubtful(&mut self, is_lamp: impl Fn(&Self, u32) -> Result<bool>) -> Result<()> {
+        for node in std::mem::take(&mut self.doubtful) {
+            let list = if is_lamp(self, node)? { &mut self.found } else { &mut self.doubtful };
+            list.push(node);
+        }
+        Ok(())
+    }
+}
+
 /// The limits that a lamp must meet, derived from the lamps under the strokes.
 struct LampLimits {
     min_area: f64,
@@ -172,10 +183,15 @@ impl LampLimits {
     }
 }
 
-/// Ranges `[min, max]` of the area and the aspect of lamps, measured on a face of the room.
+/// Limits of lamps, measured on a face of the room.
 struct FaceLimits {
+    /// Ranges `[min, max]` of the area and of the aspect.
     area: [f64; 2],
     aspect: [f64; 2],
+    /// Maximum length of a lamp that the photo's border cuts. Its aspect may have any value, but a cut makes no lamp
+    /// longer. The length of the longest lamp under a stroke is multiplied by the factor by which it grows if area and
+    /// aspect grow by `MAX_FACE_AREA_RATIO` and `LONGER`.
+    max_length: f64,
 }
 
 pub struct Search<'a> {
@@ -253,14 +269,10 @@ impl Search<'_> {
         if !self.is_proposed {
             return Ok(());
         }
-        let doubtful = std::mem::take(&mut similar.doubtful);
-        for node in doubtful {
+        similar.retry_doubtful(|similar, node| {
             let lamps = painted.iter().chain(&similar.found);
-            match self.place_in_line(model, lamps, taken, node)? {
-                Some(true) => similar.found.push(node),
-                _ => similar.doubtful.push(node),
-            }
-        }
+            Ok(self.place_in_line(model, lamps, taken, node)? == Some(true))
+        })?;
         let candidates = self.candidates(model, painted, chosen, IN_LINE)?;
         for (k, &(node, _)) in candidates.iter().enumerate() {
             if k % 256 == 0 {
@@ -317,14 +329,10 @@ impl Search<'_> {
         similar: &mut Similar,
         job: Job,
     ) -> Result<()> {
-        let doubtful = std::mem::take(&mut similar.doubtful);
-        for node in doubtful {
+        similar.retry_doubtful(|similar, node| {
             let is_alike = self.likeness(model, node as usize, ALIKE) >= 1.0;
-            match is_alike && self.is_alike(model, painted, similar, taken, node)? {
-                true => similar.found.push(node),
-                false => similar.doubtful.push(node),
-            }
-        }
+            Ok(is_alike && self.is_alike(model, painted, similar, taken, node)?)
+        })?;
         let candidates = self.candidates(model, painted, chosen, ALIKE)?;
         for (k, &(node, likeness)) in candidates.iter().enumerate() {
             if k % 256 == 0 {
@@ -415,9 +423,11 @@ impl Search<'_> {
                     values.fold([f64::INFINITY, 0.0f64], |[low, high], v| [low.min(v), high.max(v)])
                 };
                 let ([min, max], [round, long]) = (range(&|n| surface.area[n]), range(&|n| surface.aspect(n)));
+                let [_, longest] = range(&|n| surface.length(n));
                 FaceLimits {
                     area: [min / MAX_FACE_AREA_RATIO, max * MAX_FACE_AREA_RATIO],
                     aspect: [round / ROUNDER, long * LONGER],
+                    max_length: longest * (MAX_FACE_AREA_RATIO * LONGER).sqrt(),
                 }
             }),
             max_breadth: max_of(of(&|n| regions.axes(n)[1])) * MAX_BREADTH_RATIO,
@@ -432,9 +442,9 @@ impl Search<'_> {
     }
 
     /// Whether a node has the size of a lamp. If the room has a box layout, area and aspect are measured on the plane;
-    /// a lamp that the photo's border cuts may then have any aspect, and an area down to `MIN_CUT_AREA` times the
-    /// minimum. Without a layout, area and breadth are measured in the photo. The minimum area in photo pixels always
-    /// applies, multiplied by `limits.area`.
+    /// a lamp that the photo's border cuts may then have any aspect, a length up to `max_length`, and an area down to
+    /// `MIN_CUT_AREA` times the minimum. Without a layout, area and breadth are measured in the photo. The minimum area
+    /// in photo pixels always applies, multiplied by `limits.area`.
     fn has_size(&self, model: &LampLimits, limits: Limits, node: usize) -> bool {
         let min_area = limits.area * model.min_area;
         let regions = self.regions;
@@ -447,7 +457,11 @@ impl Search<'_> {
         }
         let is_whole = surface.area[node] >= on_surface.area[0]
             && (on_surface.aspect[0]..=on_surface.aspect[1]).contains(&surface.aspect(node));
-        let may_be_cut = || surface.area[node] >= MIN_CUT_AREA * on_surface.area[0] && self.is_cut(node as u32);
+        let may_be_cut = || {
+            surface.area[node] >= MIN_CUT_AREA * on_surface.area[0]
+                && surface.length(node) <= on_surface.max_length
+                && self.is_cut(node as u32)
+        };
         area >= min_area && (is_whole || may_be_cut())
     }
 
