@@ -58,6 +58,18 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
     })
 }
 
+impl Unwarped {
+    /// The mask `valid`, joined with the unwarped `mask`, a mask of the photo.
+    pub fn valid_with(&self, mask: &Image, job: Job) -> Result<Image> {
+        let Image { width, height, .. } = self.valid;
+        let mut valid = resample::warp_photo(&mask.channel(0)?, &self.to_photo, width, height, job)?;
+        for (joined, valid) in valid.data.iter_mut().zip(&self.valid.data) {
+            *joined = if *joined >= 0.5 { 1.0 } else { *valid };
+        }
+        Ok(valid)
+    }
+}
+
 struct Uncertainty {
     aspect_confidence: f64,
     corner_error: [f64; 4],

@@ -200,12 +200,18 @@ impl Transfer {
         let (width, height) = (unwarped.image.width, unwarped.image.height);
         let smooth = segment::smooth_edges(&lights.confidence, job.part(0.0, 0.05))?;
         let light = rectify::warp_photo(&smooth, &unwarped.to_photo, width, height, job.part(0.05, 0.08))?;
-        let light =
-            emission::complete_lights(&unwarped.image, light, &unwarped.valid, unwarped.to_photo, job.part(0.08, 0.1))?;
+        let shown = match &self.results.plane {
+            Some(plane) => {
+                let rims = segment::lamp_rims(&plane.mask, &lights.mask, photo, job.part(0.08, 0.085))?;
+                unwarped.valid_with(&rims, job.part(0.085, 0.09))?
+            }
+            None => unwarped.valid.clone(),
+        };
+        let light = emission::complete_lights(&unwarped.image, light, &shown, unwarped.to_photo, job.part(0.09, 0.1))?;
         let input = emission::Input {
             unwarped: &unwarped.image,
             light: &light,
-            valid: &unwarped.valid,
+            valid: &shown,
             photo: Some((photo, unwarped.to_photo)),
         };
         let pattern = &self.params.pattern;
