@@ -13,7 +13,7 @@ pub mod sites;
 use super::exemplar::Exemplar;
 use super::exemplar::roles::Role;
 use super::lattice::law::{self, Law};
-use super::lattice::{self, Correlated, basis, extent, neighbours, steps};
+use super::lattice::{self, Correlated, extent, neighbours, steps};
 use super::params::{Input, LawMode, Params, working_side};
 use crate::error::{Error, Result};
 use crate::job::Job;
@@ -37,8 +37,8 @@ const MAX_SHIFTS: usize = 6;
 /// lattice. A lattice or row must score higher if it is to replace another law. [judged on 20 photos]
 const SCORE_WITHOUT_PERIOD: f64 = 0.35;
 /// If the lattice or row found in the whole exemplar scores below this value, and no other one replaces it, the
-/// pattern counts as having no period. [judged on 20 photos]
-const MIN_SCORE: f64 = 0.15;
+/// pattern counts as having no period. [bench photos:tune, photos:real]
+const MIN_SCORE: f64 = 0.2;
 /// One score is clearly higher than another if it is higher by more than this. [judged on 20 photos]
 const CLEAR_MARGIN: f64 = 0.1;
 /// Let w be the number of photo pixels that show whole lamps, and t the number that show lights running through the
@@ -260,7 +260,7 @@ impl Analysis {
                 let row = lattice::row(exemplar, a);
                 proposals.push(Proposal { law: row, regularity: goodness, score: 0.0 });
                 for &(b, other) in shifts[n + 1..].iter().filter(|(b, _)| !lattice::is_parallel(a, *b)) {
-                    let law = Law::Lattice(basis::refine(exemplar, [a, b], 2));
+                    let law = lattice::lattice(exemplar, [a, b]);
                     proposals.push(Proposal { law, regularity: goodness.min(other), score: 0.0 });
                 }
             }
@@ -276,7 +276,7 @@ impl Analysis {
             false => steps::periods(&[&evidence.whole[..], &evidence.completed].concat()),
         };
         let lattices = neighbours::lattices(&periods).into_iter();
-        let lattices = lattices.map(|basis| Law::Lattice(basis::refine(exemplar, basis, 2)));
+        let lattices = lattices.map(|periods| lattice::lattice(exemplar, periods));
         let rows = neighbours::rows(&periods).into_iter().map(|period| lattice::row(exemplar, period));
         proposals.extend(lattices.chain(rows).map(|law| Proposal { law, regularity: 0.0, score: 0.0 }));
         Ok(proposals)

@@ -114,6 +114,15 @@ impl Exemplar {
         self.lit_share >= MIN_LUMINOUS_SHARE
     }
 
+    /// Whether the lamps that the photo shows completely have less than half of the light's photo pixels.
+    pub fn is_mostly_cut(&self) -> bool {
+        let of = |is_counted: fn(Role) -> bool| {
+            let lights = self.roles.iter().zip(&self.photo_area).filter(|(role, _)| is_counted(**role));
+            lights.map(|(_, area)| area).sum::<f64>()
+        };
+        of(Role::is_whole) < 0.5 * of(|_| true)
+    }
+
     /// The bounding box of the lights: `[[first column, first row], [last column, last row]]`, inclusive.
     pub fn box_of_lights(&self) -> [[usize; 2]; 2] {
         let corners =

@@ -21,6 +21,7 @@ pub mod kind_check;
 pub mod law;
 pub mod neighbours;
 pub mod repeats;
+pub mod sliding;
 pub mod steps;
 
 use super::exemplar::Exemplar;
@@ -56,9 +57,21 @@ pub fn find_law(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f3
     let goodness = periods.iter().map(|p| p.1).fold(f64::INFINITY, f64::min);
     let extent = extent::of(exemplar);
     match periods[..] {
-        [(a, _), (b, _)] => (Law::Lattice(basis::refine(exemplar, [a, b], 2)), goodness),
+        [(a, _), (b, _)] => (lattice(exemplar, [a, b]), goodness),
         [(a, _)] => (row(exemplar, a), goodness),
         _ => (without_period(exemplar, extent), 0.0),
+    }
+}
+
+/// A lattice with about the given periods, refined by the centres of the lamps. If a vector of the lattice only slides
+/// the lights along themselves ([`sliding`]), the lights are lines. The law is then the lattice of lines without ends
+/// if the border cuts most of the light, and a row across the lines otherwise.
+pub fn lattice(exemplar: &Exemplar, periods: [DVec2; 2]) -> Law {
+    let basis = basis::refine(exemplar, periods, 2);
+    match sliding::find(exemplar, basis) {
+        None => Law::Lattice(basis),
+        Some(lines) if exemplar.is_mostly_cut() => Law::Lattice(lines),
+        Some([_, period]) => row(exemplar, period),
     }
 }
 

@@ -86,3 +86,23 @@ fn a_composition_lists_lines_and_whatever_follows_the_patches() {
         }
     }
 }
+
+#[test]
+fn lines_that_the_border_cuts_at_different_places_have_no_period_along_them() {
+    // The lines begin at the left border and end at different places. Each resembles itself after any short shift.
+    let ends = |y: f64| 120.0 + (y / 24.0).floor() * 17.0 % 40.0;
+    let exemplar = Design::new(200, 190, move |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && x < ends(y));
+    let monitor = Monitor::default();
+    let exemplar = Exemplar::new(&exemplar.input(), 200.0, 0.0, monitor.job()).unwrap();
+    let oblique = [DVec2::new(-8.0, 24.0), DVec2::new(29.0, 24.0)];
+    let Law::Lattice([along, across]) = lattice::lattice(&exemplar, oblique) else { panic!("no lattice") };
+    assert_eq!((along, across.x), (DVec2::X, 0.0));
+    assert!((across.y - 24.0).abs() < 1e-6, "{across}");
+
+    // Battens with two ends in view have a true period along them, and no vector of their lattice slides them.
+    let battens = Design::new(400, 190, |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && (x - 10.0).rem_euclid(90.0) < 70.0);
+    let battens = Exemplar::new(&battens.input(), 400.0, 0.0, monitor.job()).unwrap();
+    let periods = [DVec2::new(90.0, 0.0), DVec2::new(0.0, 24.0)];
+    let Law::Lattice(found) = lattice::lattice(&battens, periods) else { panic!("no lattice") };
+    assert!(found.iter().zip(&periods).all(|(found, period)| (*found - *period).length() < 0.5), "{found:?}");
+}
