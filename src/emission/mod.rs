@@ -75,7 +75,7 @@ use crate::job::Job;
 use analysis::Analysis;
 use assemble::{assemble, statistics_of};
 use exemplar::{bars, joins, panes};
-use lamps::luminaires;
+use lamps::{lines, luminaires};
 
 /// Makes the result of emission from a texture that the caller supplies, without any synthesis. A texel counts as light
 /// if any of its channels is above 0.
@@ -161,11 +161,14 @@ fn blend_analysed(
 }
 
 /// Makes each lamp of the unwarped light mask one piece. If the mask shows a luminous ceiling, removes the bars between
-/// its panes, so that each pane becomes a lamp. Otherwise, joins the parts of lamps that the mask separates. Returns
-/// the mask unchanged if there is nothing to remove or to join.
+/// its panes, so that each pane becomes a lamp. Otherwise, joins the parts of lamps that the mask separates, and
+/// straightens lines of light that the border cuts. Returns the mask unchanged if there is nothing of this to do.
 pub fn complete_lights(unwarped: &Image, light: Image, valid: &Image, to_photo: PhotoMap, job: Job) -> Result<Image> {
     let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
-    let parted = panes::part(&plane, job)?;
-    let completed = if parted.is_some() { parted } else { joins::join(&plane, job)? };
-    Ok(completed.unwrap_or(light))
+    if let Some(parted) = panes::part(&plane, job)? {
+        return Ok(parted);
+    }
+    let light = joins::join(&plane, job)?.unwrap_or(light);
+    let plane = bars::LitPlane { unwarped, light: &light, valid, to_photo: Some(to_photo) };
+    Ok(lines::straighten(&plane, job)?.unwrap_or(light))
 }

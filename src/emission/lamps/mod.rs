@@ -11,6 +11,7 @@ pub mod instance;
 pub mod instances;
 pub mod kinds;
 pub mod lattice_fill;
+pub mod lines;
 pub mod luminaire;
 pub mod luminaires;
 pub mod member;
