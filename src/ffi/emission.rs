@@ -40,7 +40,7 @@ pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 /// length L and clamped to [-1, 1]; both are 1 if no pixel is lit. L is the side of a patch, but at most half the
 /// longer period if the lights repeat.
 pub const LUXFER_EMISSION_EXEMPLAR_GUIDES: luxfer_emission_image = 2;
-/// The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_GUIDES,
+/// The guide channels of the texture, at the resolution of LUXFER_EMISSION_EXEMPLAR_GUIDES: pixels of that image,
 /// copied with the patches that give the texture its colours.
 pub const LUXFER_EMISSION_GUIDES: luxfer_emission_image = 3;
 
@@ -108,10 +108,10 @@ pub struct luxfer_emission_params {
     /// This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
     pub clean_lamps: u32,
     /// Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
-    /// magnifies distant parts of the plane more than near ones. The magnification of a pixel is a length in the
-    /// unwarped photo divided by the same length in the photo; the relative magnification is this ratio divided by that
-    /// of the least magnified pixel of the exemplar. Pixels beyond the limit are left out, as if the photo did not show
-    /// them.
+    /// magnifies distant parts of the plane more than near parts. The magnification of a pixel is its length in the
+    /// unwarped photo divided by its length in the photo; the relative magnification is the magnification of the pixel
+    /// divided by the magnification of the least magnified pixel of the exemplar. Pixels beyond the limit are left out,
+    /// as if the photo did not show them.
     pub max_magnification: f64,
 }
 
@@ -193,10 +193,10 @@ pub struct luxfer_emission_report {
     /// this.
     pub exemplar_lamps: u32,
     /// Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
-    /// ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
-    /// of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
-    /// indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a composition,
-    /// and if the texture is too small to hold parts as large as the exemplar at clearly different places.
+    /// ceiling. It is the root mean square difference between the three statistics of the whole texture and the
+    /// statistics of parts of the texture that are as large as the exemplar. If error is at most twice this value, it
+    /// does not indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a
+    /// composition, and if the texture is too small to hold parts as large as the exemplar at clearly different places.
     pub sampling_error: f32,
     /// The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
@@ -209,9 +209,8 @@ pub struct luxfer_emission_report {
     /// whole lamps.
     pub law_score: f64,
     /// law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is NaN.
-    /// LUXFER_LAW_BEST prefers two kinds of laws: the one that LUXFER_LAW_CORRELATION would choose, and lattices along
-    /// the axes of the room. If it has kept a preferred law although runner_up scores slightly better, the value is
-    /// negative.
+    /// LUXFER_LAW_BEST prefers the law that LUXFER_LAW_CORRELATION would choose, and lattices along the axes of the
+    /// room. If it has kept a preferred law although runner_up scores slightly better, the value is negative.
     pub margin: f64,
 }
 
@@ -440,7 +439,7 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
     })
 }
 
-/// Starts a job that makes the whole texture in memory. For textures that are too large for that, use
+/// Starts a job that makes the whole texture in memory. For textures that are too large for the memory, use
 /// luxfer_emission_start_composition. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
 /// LUXFER_DEGENERATE if the exemplar has no lights, or if the setting law asks for a lattice or a row that the lights

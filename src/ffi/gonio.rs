@@ -73,9 +73,10 @@ versioned!(luxfer_gonio_report, [40], {
     Self { struct_size: 40, position: [0.0; 3], flux: 0.0, flux_error: 0.0, intensity_error: 0.0 }
 });
 
-/// Measures the distribution of count meshes of a scene, whose indices are in the array meshes; of all meshes if count
-/// is 0, where meshes may be NULL. The intensities account for the light that the meshes block, reflect and transmit.
-/// Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
+/// Measures the distribution of count meshes of a scene, whose indices are in the array meshes. If count is 0, the call
+/// measures all meshes of the scene, and meshes may be NULL. The intensities account for the light that the meshes
+/// block, reflect and transmit. Other meshes, lights, luminaires and the environment count as absent. params may be
+/// NULL for the defaults.
 ///
 /// The result is of absolute photometry, states no power and no colour, and has the name of the first mesh with a name.
 /// Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts that

@@ -104,8 +104,8 @@ pub struct luxfer_rectify_params {
     /// Must be 0.
     pub reserved: u32,
     /// Limit of the magnification by unwarping, a ratio of lengths in (0, 1e6]; default 16. The farther a part of the
-    /// plane is from the camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the
-    /// nearest part by more than this factor are cut off.
+    /// plane is from the camera, the more its photo pixels are magnified. Parts that are magnified more than this
+    /// factor times as much as the nearest part are cut off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -192,8 +192,8 @@ pub struct luxfer_rectify_report {
     pub vanishing_points: [[f64; 3]; 3],
     /// Standard deviation of the direction to each vanishing point in camera space, in radians.
     pub vanishing_errors: [f64; 3],
-    /// Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from the
-    /// others, or from the assumption that the camera is upright.
+    /// Number of segments that run to each vanishing point; 0: no segment runs to the point, which is then derived from
+    /// the other vanishing points, or from the assumption that the camera is upright.
     pub vanishing_support: [u32; 3],
     /// Source of the focal length: a LUXFER_FOCAL_ value.
     pub focal_source: luxfer_focal_source,
@@ -233,8 +233,8 @@ pub struct luxfer_rectify_report {
     pub squareness: [f64; 3],
     /// Standard deviations of the field squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
-    /// The distortion that was undone, in the unit of the field distortion: the one that
-    /// luxfer_rectify_params.distortion sets, else the measured one; 0 if none was undone.
+    /// The distortion that was undone, in the unit of the field distortion; 0 if no distortion was undone. It equals
+    /// luxfer_rectify_params.distortion or, if that is NaN, the measured distortion.
     pub undone: f64,
 }
 

@@ -329,7 +329,7 @@ pub unsafe extern "C" fn luxfer_transfer_set_texture(
 }
 
 /// Sets the camera of the rendered picture. camera may be NULL, the default: the first camera of the scene, or a camera
-/// in a corner of the room if the scene has none. Any thread.
+/// in a corner of the room if the scene has no camera. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_camera(
