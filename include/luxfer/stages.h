@@ -706,8 +706,8 @@ typedef int32_t luxfer_emission_law;
 /**
  * In settings only: the law follows from the periods in the autocorrelation of the lights. Two periods give
  * LUXFER_LAW_LATTICE, one period gives LUXFER_LAW_ROW. Without a period, the law is LUXFER_LAW_WHOLE if the exemplar
- * shows few lamps, and otherwise LUXFER_LAW_FREE. A period counts only if the correlation after a shift by this period
- * is at least the setting min_regularity.
+ * shows few lamps or one isolated group of lamps, and otherwise LUXFER_LAW_FREE. A period counts only if the
+ * correlation after a shift by this period is at least the setting min_regularity.
  */
 #define LUXFER_LAW_CORRELATION 1
 

@@ -14,8 +14,8 @@ pub type luxfer_emission_law = i32;
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
 /// In settings only: the law follows from the periods in the autocorrelation of the lights. Two periods give
 /// LUXFER_LAW_LATTICE, one period gives LUXFER_LAW_ROW. Without a period, the law is LUXFER_LAW_WHOLE if the exemplar
-/// shows few lamps, and otherwise LUXFER_LAW_FREE. A period counts only if the correlation after a shift by this period
-/// is at least the setting min_regularity.
+/// shows few lamps or one isolated group of lamps, and otherwise LUXFER_LAW_FREE. A period counts only if the
+/// correlation after a shift by this period is at least the setting min_regularity.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
 /// The lamps form a lattice with two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;

@@ -7,9 +7,9 @@
 //!
 //! - If there is only one such shift, the lamps form a row. The second period leads across the row; its length follows
 //!   from the extent of the exemplar.
-//! - If there is none, and there are only a few lamps or one isolated group of lamps, the exemplar repeats as a whole.
-//!   The periods then follow from its width and its height.
-//! - If there is none, but there are many lamps, patches are placed without a lattice.
+//! - If no shift maps the mask onto itself, and there are only a few lamps or one isolated group of lamps, the exemplar
+//!   repeats as a whole. The periods then follow from its width and its height.
+//! - If no shift maps the mask onto itself, but there are many lamps, patches are placed without a lattice.
 
 pub mod basis;
 pub mod border_sites;
