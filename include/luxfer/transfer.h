@@ -678,8 +678,9 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_MAGNIFIED 13
 
 /**
- * The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the viewing
- * ray, the median over the plane; it is below the limit. The warning points to the point with the smallest angle.
+ * The camera sees the plane nearly edge-on. The severity is the median, over the plane, of the sine of the angle
+ * between the plane and the viewing ray; it is below the limit. The warning points to the point with the smallest
+ * angle.
  */
 #define LUXFER_WARNING_PLANE_NEAR_HORIZON 14
 

@@ -68,8 +68,9 @@ pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
 /// Much of the unwarped plane is magnified more than 4 times from the photo; the severity is the share of the plane
 /// that is magnified so much. The warning points to the point with the largest magnification.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
-/// The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the viewing
-/// ray, the median over the plane; it is below the limit. The warning points to the point with the smallest angle.
+/// The camera sees the plane nearly edge-on. The severity is the median, over the plane, of the sine of the angle
+/// between the plane and the viewing ray; it is below the limit. The warning points to the point with the smallest
+/// angle.
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
 /// The texture and the photo differ in the statistics of their lamps; the severity is luxfer_emission_report.error.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;

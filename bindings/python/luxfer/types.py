@@ -416,8 +416,8 @@ class EmissionLaw(IntEnum):
     CORRELATION = 1
     """In settings only: the law follows from the periods in the autocorrelation of the lights. Two periods give
     EmissionLaw.LATTICE, one period gives EmissionLaw.ROW. Without a period, the law is EmissionLaw.WHOLE if the
-    exemplar shows few lamps, and otherwise EmissionLaw.FREE. A period counts only if the correlation after a
-    shift by this period is at least the setting min_regularity."""
+    exemplar shows few lamps or one isolated group of lamps, and otherwise EmissionLaw.FREE. A period counts
+    only if the correlation after a shift by this period is at least the setting min_regularity."""
     LATTICE = 2
     """The lamps form a lattice with two periods."""
     ROW = 3
@@ -637,8 +637,8 @@ class WarningCode(IntEnum):
     """Much of the unwarped plane is magnified more than 4 times from the photo; the severity is the share of
     the plane that is magnified so much. The warning points to the point with the largest magnification."""
     PLANE_NEAR_HORIZON = 14
-    """The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the
-    viewing ray, the median over the plane; it is below the limit. The warning points to the point with the
+    """The camera sees the plane nearly edge-on. The severity is the median, over the plane, of the sine of the
+    angle between the plane and the viewing ray; it is below the limit. The warning points to the point with the
     smallest angle."""
     PATTERN_UNCERTAIN = 15
     """The texture and the photo differ in the statistics of their lamps; the severity is
