@@ -8,7 +8,7 @@ use std::fmt;
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The cause belongs to none of the other kinds.
+    /// The cause does not belong to any of the other kinds.
     Unknown = 1,
     /// A parameter is null, out of range, or contradicts another.
     InvalidArgument = 2,

@@ -94,7 +94,7 @@ impl Format {
     /// Writes a luminaire as a file of this format.
     ///
     /// # Errors
-    /// Those of [`Luminaire::check`].
+    /// The errors of [`Luminaire::check`].
     pub fn write(self, luminaire: &Luminaire) -> Result<Vec<u8>> {
         match self {
             Self::Ies => ies::write(luminaire).map(String::into_bytes),

@@ -52,8 +52,8 @@ impl Scene {
             .collect()
     }
 
-    /// Warns if the importer moved the scene to an origin other than that of its file. Otherwise, warns if coordinates
-    /// are so large that neighbouring `f32` values differ by more than [`MAX_SPACING`].
+    /// Warns if the importer moved the scene to an origin other than the origin of its file. Otherwise, warns if
+    /// coordinates are so large that neighbouring `f32` values differ by more than [`MAX_SPACING`].
     fn far_away(&self) -> Option<Warning> {
         if self.origin != DVec3::ZERO {
             let [x, y, z] = self.origin.to_array();

@@ -9,7 +9,7 @@ use crate::scene::surface::Surface;
 use glam::{DVec2, DVec4, UVec2};
 
 /// Finds for each texel whether light is allowed there; returns `None` if light is allowed everywhere. The texture has
-/// `size` texels and covers the bounding rectangle of `surface`, whose axes are those of the rotated pattern. The
+/// `size` texels and covers the bounding rectangle of `surface`, whose axes are the axes of the rotated pattern. The
 /// zones are given along the axes of `untouched`, the surface before the rotation.
 pub(super) fn find(
     scene: &Scene,

@@ -140,7 +140,7 @@ impl Correlated {
 }
 
 /// At most two shifts, in unwarped pixels, that map the pattern of lights onto itself, with their correlations: the
-/// shortest one, and the shortest of those that are not parallel to it.
+/// shortest shift, and the shortest of the shifts that are not parallel to it.
 fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> Vec<(DVec2, f64)> {
     let mut periods: Vec<(DVec2, f64)> = Vec::new();
     for (shift, value) in shifts(exemplar, correlated, min_regularity, MIN_RELATIVE_CORRELATION, usize::MAX) {
