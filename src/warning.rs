@@ -7,7 +7,7 @@
 use glam::DVec2;
 use std::fmt;
 
-/// The kind of a warning. The values are those of `luxfer_warning_code`, so new kinds may only be appended.
+/// The kind of a warning. The kinds have the values of `luxfer_warning_code`, so new kinds may only be appended.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Code {

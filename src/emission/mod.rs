@@ -132,7 +132,7 @@ pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Resu
 }
 
 /// Like [`blend`], but reuses the analysis of the first exemplar that [`measure`] has made. Repeats the analysis if the
-/// size of the input, or a setting that affects the analysis, differs from that of `measure`.
+/// size of the input, or a setting that affects the analysis, differs from the size or setting of `measure`.
 pub fn blend_measured(
     measured: Measurements,
     input: &Input,

@@ -77,7 +77,7 @@ impl Format {
     /// from 0; with `None`, the first variant is read.
     ///
     /// # Errors
-    /// Those of the format's reader; `InvalidArgument` if `variant` is given but the format has no variants.
+    /// The errors of the format's reader; `InvalidArgument` if `variant` is given but the format has no variants.
     pub fn read(self, bytes: &[u8], variant: Option<&str>) -> Result<File> {
         if let (Some(variant), true) = (variant, self != Self::Gldf) {
             return Err(Error::argument(format!("the variant is {variant:?}, but only GLDF containers have variants")));

@@ -134,8 +134,8 @@ mod tests {
             ..Scene::default()
         };
         let by_name = surface::find(&scene, "Plaster").unwrap();
-        // Select the surface by triangles, including those of the beam: the beam lies in another plane and must be
-        // left out.
+        // Select the surface by triangles, including the triangles of the beam: the beam lies in another plane and must
+        // be left out.
         let listed: Vec<(usize, usize)> = (0..3).flat_map(|mesh| [(mesh, 0), (mesh, 1)]).collect();
         assert_eq!(surface::from_triangles(&scene, &listed).unwrap(), by_name);
         assert_eq!(by_name.triangles, [(0, 0), (0, 1), (1, 0), (1, 1)]);

@@ -23,7 +23,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
 /// Reads a TM-33 file like [`read`], and also counts its emitters.
 ///
 /// # Errors
-/// Those of [`read`].
+/// The errors of [`read`].
 pub fn read_file(bytes: &[u8]) -> Result<File> {
     let text = xml::decode(bytes)?;
     let document = xml::parse(&text)?;
