@@ -402,8 +402,8 @@ typedef struct luxfer_image_view {
      */
     size_t byte_size;
     /**
-     * The pixels, at any alignment; default NULL: the caller must set it. Bytes between pixels and rows are never
-     * touched.
+     * The pixels, at any alignment; default NULL: the caller must set it. The library neither reads nor writes the
+     * bytes between pixels or rows.
      */
     void *data;
 } luxfer_image_view;

@@ -608,7 +608,10 @@ typedef struct luxfer_distribution_report {
     uint32_t emitters;
 } luxfer_distribution_report;
 
-/** IES LM-63 (.ies), with photometry of type C, or of type B when read. */
+/**
+ * IES LM-63 (.ies) with photometry of type C. Files with photometry of type B are converted to type C when they are
+ * loaded.
+ */
 #define LUXFER_DISTRIBUTION_IES 0
 
 /** EULUMDAT (.ldt). */

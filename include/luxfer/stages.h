@@ -774,9 +774,10 @@ typedef struct luxfer_emission_params {
     uint32_t whole_lamps;
     /**
      * Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-     * default 0. With LUXFER_LAW_FREE, the offset shifts all lamps if the texture is tileable and no light is copied
-     * patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or the job ends
-     * with LUXFER_INVALID_ARGUMENT; with whole_lamps = 0 it has no effect.
+     * default 0. LUXFER_LAW_FREE has no lattice that an offset could shift: with this law, an offset other than 0 ends
+     * the job with LUXFER_INVALID_ARGUMENT. There are two exceptions. If the texture is tileable and no light is
+     * copied patch by patch (luxfer_emission_get_luminaire says which lights are), the offset shifts all lamps. With
+     * whole_lamps = 0, the offset has no effect.
      */
     double offset[2];
     /**
@@ -915,8 +916,8 @@ typedef struct luxfer_luminaire {
     /** Mean linear RGB colour, where 1 is the photo's white. */
     float colour[3];
     /**
-     * Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %, are of
-     * one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
+     * Number of the lamp's kind, from 1. Lamps of about equal size and shape, whose areas and sides differ by at most
+     * 25 %, are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
      */
     uint32_t kind;
 } luxfer_luminaire;

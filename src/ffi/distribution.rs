@@ -24,7 +24,8 @@ pub struct luxfer_distribution {
 
 /// A file format of distributions: a LUXFER_DISTRIBUTION_ value.
 pub type luxfer_distribution_format = i32;
-/// IES LM-63 (.ies), with photometry of type C, or of type B when read.
+/// IES LM-63 (.ies) with photometry of type C. Files with photometry of type B are converted to type C when they are
+/// loaded.
 pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
 /// EULUMDAT (.ldt).
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;

@@ -75,9 +75,10 @@ pub struct luxfer_emission_params {
     /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,
     /// Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-    /// default 0. With LUXFER_LAW_FREE, the offset shifts all lamps if the texture is tileable and no light is copied
-    /// patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or the job ends
-    /// with LUXFER_INVALID_ARGUMENT; with whole_lamps = 0 it has no effect.
+    /// default 0. LUXFER_LAW_FREE has no lattice that an offset could shift: with this law, an offset other than 0 ends
+    /// the job with LUXFER_INVALID_ARGUMENT. There are two exceptions. If the texture is tileable and no light is
+    /// copied patch by patch (luxfer_emission_get_luminaire says which lights are), the offset shifts all lamps. With
+    /// whole_lamps = 0, the offset has no effect.
     pub offset: [f64; 2],
     /// A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
     /// core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with the clipped
@@ -249,8 +250,8 @@ pub struct luxfer_luminaire {
     pub flux_share: f64,
     /// Mean linear RGB colour, where 1 is the photo's white.
     pub colour: [f32; 3],
-    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %, are of
-    /// one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
+    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape, whose areas and sides differ by at most
+    /// 25 %, are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
     pub kind: u32,
 }
 

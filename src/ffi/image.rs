@@ -74,8 +74,8 @@ pub struct luxfer_image_view {
     /// Size of the memory at data in bytes; default 0: the caller must set it. LUXFER_INVALID_ARGUMENT if the pixels
     /// and the strides need more.
     pub byte_size: usize,
-    /// The pixels, at any alignment; default NULL: the caller must set it. Bytes between pixels and rows are never
-    /// touched.
+    /// The pixels, at any alignment; default NULL: the caller must set it. The library neither reads nor writes the
+    /// bytes between pixels or rows.
     pub data: *mut c_void,
 }
 

@@ -178,7 +178,8 @@ class DistributionFormat(IntEnum):
     """A file format of distributions."""
 
     IES = 0
-    """IES LM-63 (.ies), with photometry of type C, or of type B when read."""
+    """IES LM-63 (.ies) with photometry of type C. Files with photometry of type B are converted to type C when
+    they are loaded."""
     LDT = 1
     """EULUMDAT (.ldt)."""
     TM33 = 2
@@ -920,8 +921,8 @@ class Demo(IntEnum):
     """A glossy red ball on a white table: the exemplar scene of a stylisation, of which an artist would paint a
     picture."""
     STILL_LIFE = 3
-    """A vase, a ring and two balls, on the same table and under the same lamp as in Demo.SPHERE_ON_TABLE: a
-    target scene for a stylisation."""
+    """A vase, a ring and two balls, on the table and under the lamp of Demo.SPHERE_ON_TABLE: a target scene for
+    a stylisation."""
 
 
 class Artwork(IntEnum):
@@ -1088,8 +1089,8 @@ class ImageView(TypedDict, total=False):
     """Size of the memory at data in bytes; default 0: the caller must set it. Status.INVALID_ARGUMENT if the
     pixels and the strides need more."""
     data: int
-    """The pixels, at any alignment; default None: the caller must set it. Bytes between pixels and rows are
-    never touched."""
+    """The pixels, at any alignment; default None: the caller must set it. The library neither reads nor writes
+    the bytes between pixels or rows."""
 
 
 @dataclass(frozen=True)
@@ -1789,9 +1790,10 @@ class EmissionParams(TypedDict, total=False):
     """1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps."""
     offset: Sequence[float]
     """Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6,
-    1e6]; default 0. With EmissionLaw.FREE, the offset shifts all lamps if the texture is tileable and no light
-    is copied patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or
-    the job ends with Status.INVALID_ARGUMENT; with whole_lamps = 0 it has no effect."""
+    1e6]; default 0. EmissionLaw.FREE has no lattice that an offset could shift: with this law, an offset other
+    than 0 ends the job with Status.INVALID_ARGUMENT. There are two exceptions. If the texture is tileable and
+    no light is copied patch by patch (luxfer_emission_get_luminaire says which lights are), the offset shifts
+    all lamps. With whole_lamps = 0, the offset has no effect."""
     clip_level: float
     """A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The
     clipped core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with
@@ -1891,8 +1893,8 @@ class Luminaire:
     colour: tuple[float, float, float]
     """Mean linear RGB colour, where 1 is the photo's white."""
     kind: int
-    """Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %,
-    are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp."""
+    """Number of the lamp's kind, from 1. Lamps of about equal size and shape, whose areas and sides differ by
+    at most 25 %, are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp."""
 
 
 class RelightParams(TypedDict, total=False):
