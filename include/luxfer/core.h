@@ -359,7 +359,7 @@ luxfer_status luxfer_release(void *handle);
  * keeps a pointer to them.
  * ================================================================================================================== */
 
-/** Flag of a view: the first row in memory is the bottom one. */
+/** Flag of a view: the first row in memory is the bottom row of the image. */
 #define LUXFER_VIEW_BOTTOM_UP 1
 
 /** An image in the library's memory. See luxfer_image_create. */
@@ -487,7 +487,7 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
  * All functions of this library write files as follows. An existing file is replaced only once the new one is
  * complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs, files with several hard links,
  * and files in folders that accept no new files are written in place.
- * LUXFER_INVALID_ARGUMENT if the extension is another one, the number of channels is not allowed, or exposure is out
+ * LUXFER_INVALID_ARGUMENT if the file has another extension, the number of channels is not allowed, or exposure is out
  * of range for a .png; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_image_save(luxfer_image *image,
@@ -798,7 +798,7 @@ luxfer_status luxfer_strokes_create(luxfer_context *context,
  * Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. The parameter positive is 1
  * for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
  * floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. A
- * pixel that several strokes cover belongs to the last one. Any thread.
+ * pixel that several strokes cover belongs to the last of these strokes. Any thread.
  * LUXFER_INVALID_ARGUMENT if there is no point, a coordinate is not finite, or radius or positive is out of range.
  */
 luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,

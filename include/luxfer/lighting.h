@@ -244,7 +244,7 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 /**
  * Lamps of about equal area form a group: in the order of their areas, a new group begins where the area grows by more
  * than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot, directional) forms one group,
- * and so do all luminaires with one distribution.
+ * and all luminaires with one distribution form one group.
  */
 #define LUXFER_GROUP_BY_TYPE 5
 

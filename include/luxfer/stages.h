@@ -304,7 +304,7 @@ luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
 /**
  * Undoes the distortion of the lens in an image of the photo's size, such as the photo or a mask: makes the image that
  * an ideal lens would have taken, with the same size and principal point. Pixels beyond the image are 0. If no
- * distortion was undone, the new image equals the old one. The caller releases *undistorted. Any thread.
+ * distortion was undone, the new image equals the given image. The caller releases *undistorted. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_INVALID_ARGUMENT if the image has not the photo's size.
  */
 luxfer_status luxfer_rectify_undistort(luxfer_rectify *rectify,
@@ -841,7 +841,8 @@ typedef int32_t luxfer_emission_image;
 /**
  * Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality. A
  * composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error is 0.
- * If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
+ * If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first
+ * exemplar.
  */
 typedef struct luxfer_emission_report {
     /** sizeof(luxfer_emission_report), set by the function that fills the struct. */

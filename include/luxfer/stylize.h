@@ -489,8 +489,8 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
  * inverse mask with the artwork as the known picture. The painted pixels stay as they are. The new paint continues
  * strokes across the border of the painted part, and this border is hardly visible. To avoid visible copies, the
  * library hardly ever uses a patch of the artwork more than 100 times as often as the average patch. If the painted
- * part lacks light that the rest shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place
- * where the artist should paint.
+ * part lacks light that the unpainted part shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a
+ * place where the artist should paint.
  * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
  * size or has more than 1 channel.
  */

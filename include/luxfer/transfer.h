@@ -280,7 +280,7 @@ luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
 /**
  * Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify. If that object has unwarped
  * a plane, this plane replaces the result of the stage UNWARP. The transfer then keeps this camera, even if the
- * photo's lamps suggest another one. Any thread.
+ * photo's lamps suggest another camera. Any thread.
  * LUXFER_NOT_READY if rectify has no result yet.
  */
 luxfer_status luxfer_transfer_use_rectify(luxfer_transfer *transfer,

@@ -437,7 +437,7 @@ pub unsafe extern "C" fn luxfer_rectify_get_image(
 
 /// Undoes the distortion of the lens in an image of the photo's size, such as the photo or a mask: makes the image that
 /// an ideal lens would have taken, with the same size and principal point. Pixels beyond the image are 0. If no
-/// distortion was undone, the new image equals the old one. The caller releases *undistorted. Any thread.
+/// distortion was undone, the new image equals the given image. The caller releases *undistorted. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_INVALID_ARGUMENT if the image has not the photo's size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_undistort(

@@ -127,7 +127,7 @@ pub unsafe extern "C" fn luxfer_render_start_part(
 }
 
 /// Adds a file that luxfer_render_start_part has written to the list of files to merge. path is UTF-8. The call reads
-/// only the header of the file; the merge reads the rest. Any thread.
+/// only the header of the file; the merge reads the pixels. Any thread.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is not a part of a rendering; LUXFER_INVALID_OPERATION
 /// while a job runs.
 #[unsafe(no_mangle)]

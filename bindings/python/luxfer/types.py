@@ -742,7 +742,7 @@ class Group(IntEnum):
     BY_TYPE = 5
     """Lamps of about equal area form a group: in the order of their areas, a new group begins where the area
     grows by more than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot,
-    directional) forms one group, and so do all luminaires with one distribution."""
+    directional) forms one group, and all luminaires with one distribution form one group."""
 
 
 class Aim(IntEnum):
@@ -1049,7 +1049,7 @@ class View(IntFlag):
     """View, to be combined with |."""
 
     BOTTOM_UP = 1
-    """Flag of a view: the first row in memory is the bottom one."""
+    """Flag of a view: the first row in memory is the bottom row of the image."""
 
 
 class ContextParams(TypedDict, total=False):
@@ -1833,7 +1833,7 @@ class EmissionReport:
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
     quality. A composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its
     sampling_error is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and
-    margin describe the first one."""
+    margin describe the first exemplar."""
 
     luminaires: int
     """Number of luminaires in the texture; see luxfer_emission_get_luminaire."""
