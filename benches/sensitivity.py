@@ -16,7 +16,7 @@ has replaced stay replaced. The copy leaves out `src/ffi`, which no bench uses.
 At first, each bench runs twice with the values of `src`. Figures that differ between the two runs depend on time or on
 chance and are left out; so are lines of the output that differ. The column "lines" counts the other lines of the output
 that change. With `--untouched FOLDER`, in which the benches of the unchanged tree have been built as `FOLDER/NAME`,
-the tool also checks that their figures are equal to those of the copy.
+the tool also checks that their figures are equal to the figures of the copy.
 """
 
 import argparse

@@ -73,7 +73,7 @@ def check() -> list[str]:
 
 
 def run_python(page: Path, folder: Path, environment: dict[str, str]) -> int:
-    """Runs a page's Python blocks as one program; line numbers in error messages are those of the page."""
+    """Runs a page's Python blocks as one program; error messages have the line numbers of the page."""
     source, at = "", 1
     for line, language, text in blocks(page):
         if language == "python" and parts(text) is None:

@@ -35,7 +35,7 @@ BENCH = ROOT / "out" / "bench"
 PICTURES = Path(os.environ.get("LUXFER_DOCS_PICTURES", ROOT / "target" / "docs" / "pictures"))
 EXAMPLES = Path(os.environ.get("LUXFER_DOCS_EXAMPLES", ROOT / "target" / "docs" / "examples"))
 
-#: Names that look like those of the C interface but are options of a build or of a binding.
+#: Names that look like names of the C interface but are options of a build or of a binding.
 OPTIONS = re.findall(
     r"\bLUXFER_\w+",
     "LUXFER_DEPRECATED LUXFER_NO_DEPRECATED "

@@ -3,12 +3,12 @@
 
 use std::fmt;
 
-/// Kinds of errors. Their values are those of `luxfer_status`, so new kinds may only be appended. The values 0 to 4 and
-/// 6 mean the same as in Embree and Open Image Denoise, where 5 stands for an unsupported device.
+/// Kinds of errors. They have the values of `luxfer_status`, so new kinds may only be appended. The values 0 to 4 and 6
+/// mean the same as in Embree and Open Image Denoise, where 5 stands for an unsupported device.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
-    /// The cause belongs to none of the other kinds.
+    /// The cause does not belong to any of the other kinds.
     Unknown = 1,
     /// A parameter is null, out of range, or contradicts another.
     InvalidArgument = 2,

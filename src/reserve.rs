@@ -306,7 +306,7 @@ mod tests {
     #[test]
     fn growing_an_allocation_keeps_its_contents() {
         static ALLOCATOR: Allocator = Allocator(Reserve::new());
-        // SAFETY: the layouts are those of the preceding calls.
+        // SAFETY: the layouts equal the layouts of the preceding calls.
         unsafe {
             let start = ALLOCATOR.0.take(layout(100, 8));
             (0..100).for_each(|i| start.add(i).write(i as u8));

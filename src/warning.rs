@@ -7,7 +7,7 @@
 use glam::DVec2;
 use std::fmt;
 
-/// The kind of a warning. The values are those of `luxfer_warning_code`, so new kinds may only be appended.
+/// The kind of a warning. The kinds have the values of `luxfer_warning_code`, so new kinds may only be appended.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Code {
@@ -40,7 +40,7 @@ pub enum Code {
     Magnified = 13,
     /// Unwarping: the camera sees the plane nearly edge-on.
     PlaneNearHorizon = 14,
-    /// Emission: the statistics of the texture differ from those of the photo.
+    /// Emission: texture and photo differ in the statistics of their lamps.
     PatternUncertain = 15,
     /// Emission: the photo shows too few whole lamps to determine a pattern.
     FewLamps = 16,

@@ -64,9 +64,9 @@ const char *luxfer_get_version_string(void);
  * Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added.
  * A function writes its outputs only if it returns LUXFER_OK. luxfer_context_get_last_error describes a failure in
  * words. The comment of a function lists its errors. Some errors hold for every function, even if its comment does not
- * name them: LUXFER_INVALID_ARGUMENT for a NULL pointer unless the comment allows NULL, and for an argument that is
- * none of the constants of its type; LUXFER_OUT_OF_MEMORY if the memory budget of the context, or the machine, is used
- * up.
+ * name them: LUXFER_INVALID_ARGUMENT for a NULL pointer unless the comment allows NULL, and for an argument whose type
+ * has constants and whose value is not one of them; LUXFER_OUT_OF_MEMORY if the memory budget of the context, or the
+ * machine, is used up.
  * ================================================================================================================== */
 
 /** The result of a call: LUXFER_OK, or the reason for the failure. */
@@ -263,8 +263,8 @@ luxfer_status luxfer_init(luxfer_struct_type struct_type,
  * the library, and an emergency reserve of memory. The library uses the reserve for small allocations when the system
  * has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
  *
- * Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
- * the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
+ * Fork: a child process does not have the threads of its parent. In the child, each call on an object that was created
+ * before the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
  * luxfer_release returns LUXFER_OK and frees nothing. A child may create contexts of its own.
  *
  * Stack: a thread of the host needs 128 KiB of stack for calls that load files or do other work before they return.
@@ -284,8 +284,8 @@ typedef struct luxfer_context_params {
     /**
      * Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
      * share these threads. Synchronous calls, which do their work before they return, do not use them, and so never
-     * wait for a job. A synchronous call runs on the calling thread, or on a set of num_threads other threads that it
-     * has to itself. The context keeps up to four idle sets for later calls.
+     * wait for a job. A synchronous call runs on the calling thread, or on a set of num_threads other threads, which
+     * it shares with no other call. The context keeps up to four idle sets for later calls.
      */
     uint32_t num_threads;
     /**
@@ -359,7 +359,7 @@ luxfer_status luxfer_release(void *handle);
  * keeps a pointer to them.
  * ================================================================================================================== */
 
-/** Flag of a view: the first row in memory is the bottom one. */
+/** Flag of a view: the first row in memory is the bottom row of the image. */
 #define LUXFER_VIEW_BOTTOM_UP 1
 
 /** An image in the library's memory. See luxfer_image_create. */
@@ -402,8 +402,8 @@ typedef struct luxfer_image_view {
      */
     size_t byte_size;
     /**
-     * The pixels, at any alignment; default NULL: the caller must set it. Bytes between pixels and rows are never
-     * touched.
+     * The pixels, at any alignment; default NULL: the caller must set it. The library neither reads nor writes the
+     * bytes between pixels or rows.
      */
     void *data;
 } luxfer_image_view;
@@ -487,7 +487,7 @@ luxfer_status luxfer_image_load_memory(luxfer_context *context,
  * All functions of this library write files as follows. An existing file is replaced only once the new one is
  * complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs, files with several hard links,
  * and files in folders that accept no new files are written in place.
- * LUXFER_INVALID_ARGUMENT if the extension is another one, the number of channels is not allowed, or exposure is out
+ * LUXFER_INVALID_ARGUMENT if the file has another extension, the number of channels is not allowed, or exposure is out
  * of range for a .png; LUXFER_IO if the file cannot be written.
  */
 luxfer_status luxfer_image_save(luxfer_image *image,
@@ -526,7 +526,7 @@ luxfer_status luxfer_image_read(luxfer_image *image,
 
 /**
  * How the colours of an image were interpreted: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
- * ones may be added.
+ * values may be added.
  */
 typedef int32_t luxfer_file_colour;
 
@@ -638,9 +638,9 @@ typedef struct luxfer_merge_params {
     /** Index of the reference; -1, the default: the photo with the most pixels that are well exposed. */
     int32_t reference;
     /**
-     * What happens where exposures disagree beyond noise, because something moved. 0, the default: only those
-     * exposures are averaged that agree with the reference or, where the reference is clipped, with the next shorter
-     * exposure that is not clipped. 1: all exposures are averaged.
+     * Treatment of pixels at which the exposures differ by more than noise explains, because something moved. 0, the
+     * default: a pixel is averaged only over the exposures that agree with the reference or, where the reference is
+     * clipped, with the next shorter exposure that is not clipped. 1: all exposures are averaged.
      */
     uint32_t keep_moving;
     /**
@@ -649,8 +649,8 @@ typedef struct luxfer_merge_params {
      */
     double max_shift;
     /**
-     * Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2 has a
-     * high dynamic range and is nowhere clipped.
+     * Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2 counts
+     * as a photo of high dynamic range, in which no pixel is clipped.
      */
     double saturation;
     /**
@@ -683,7 +683,10 @@ typedef struct luxfer_merge_report {
      * shortest exposure and are lower bounds.
      */
     double clipped;
-    /** Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is 1. */
+    /**
+     * Part of the pixels at which neighbouring exposures differ by more than noise explains, in [0, 1]; 0 if
+     * keep_moving is 1.
+     */
     double moved;
     /**
      * Exposure of each photo divided by the exposure of the reference: a ratio of amounts of light, not of stops;
@@ -707,8 +710,9 @@ typedef struct luxfer_merge_report {
 } luxfer_merge_report;
 
 /**
- * From the metadata and the pixels, weighted by their errors; from one of them where the other is missing. If they
- * contradict each other by more than a third of a stop, luxfer_image_merge_exposures returns LUXFER_INVALID_ARGUMENT.
+ * From the metadata and the pixels, weighted by their errors; where one of the two sources is missing, from the other
+ * source alone. If the two contradict each other by more than a third of a stop, luxfer_image_merge_exposures returns
+ * LUXFER_INVALID_ARGUMENT.
  */
 #define LUXFER_EXPOSURE_SOURCE_BOTH 0
 
@@ -720,10 +724,10 @@ typedef struct luxfer_merge_report {
 
 /**
  * Merges count photos of one view, in [1, 16], in any order, into one image. The photos have one size and one number
- * of channels (1, 3 or 4; the result has the alpha of the reference). They may be shifted by whole pixels, as photos
- * from the hand are. Where the view is rotated or something moves, fewer exposures are used. params may be NULL for
- * the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is synchronous. The
- * caller releases *image. Any thread.
+ * of channels (1, 3 or 4; the result has the alpha of the reference). They may be shifted by whole pixels, as handheld
+ * photos are. Where a photo is rotated against the reference, or something moves, fewer exposures are used. params may
+ * be NULL for the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is
+ * synchronous. The caller releases *image. Any thread.
  *
  * The estimate of a pixel is the sum of its values divided by the sum of their exposures, which has the least noise
  * that photons allow. The weight of a value falls from 1 at 80 % of the clipping value to 0 at the clipping value. A
@@ -794,7 +798,7 @@ luxfer_status luxfer_strokes_create(luxfer_context *context,
  * Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. The parameter positive is 1
  * for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
  * floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. A
- * pixel that several strokes cover belongs to the last one. Any thread.
+ * pixel that several strokes cover belongs to the last of these strokes. Any thread.
  * LUXFER_INVALID_ARGUMENT if there is no point, a coordinate is not finite, or radius or positive is out of range.
  */
 luxfer_status luxfer_strokes_add(luxfer_strokes *strokes,

@@ -38,8 +38,8 @@ typedef int32_t luxfer_artwork;
 #define LUXFER_DEMO_SPHERE_ON_TABLE 2
 
 /**
- * A vase, a ring and two balls, on the same table and under the same lamp as in LUXFER_DEMO_SPHERE_ON_TABLE: a target
- * scene for a stylisation.
+ * A vase, a ring and two balls, on the table and under the lamp of LUXFER_DEMO_SPHERE_ON_TABLE: a target scene for a
+ * stylisation.
  */
 #define LUXFER_DEMO_STILL_LIFE 3
 

@@ -244,7 +244,7 @@ static inline luxfer_status luxfer_lamps_params_init(luxfer_lamps_params *place,
 /**
  * Lamps of about equal area form a group: in the order of their areas, a new group begins where the area grows by more
  * than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot, directional) forms one group,
- * and luminaires with the same distribution form one group for each distribution.
+ * and all luminaires with one distribution form one group.
  */
 #define LUXFER_GROUP_BY_TYPE 5
 
@@ -577,7 +577,7 @@ luxfer_status luxfer_importance_respond(luxfer_importance *importance,
 /**
  * Solves for the factor, per channel, by which to multiply a texture so that the mean radiance of the target becomes
  * rgb in cd/m², each channel in [0, 1e15]. *report receives the solution, with an outcome for each channel. This call
- * uses the map; luxfer_relight solves the same problem by tracing new paths. texture and placement are as for
+ * uses the map; luxfer_relight solves this problem by tracing new paths. texture and placement are as for
  * luxfer_importance_respond. size is sizeof *report. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_UNREACHABLE if no channel has a solution: no light of the
  * channel reaches the target from the texture, or the other lights alone exceed rgb; LUXFER_INVALID_ARGUMENT if
@@ -617,15 +617,15 @@ typedef struct luxfer_placement_params {
     float radiance[3];
     /**
      * Number of placements that are tried first, in [1, 4096]; default 64. The search then descends from the best of
-     * them.
+     * these placements.
      */
     uint32_t starts;
     /** Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5. */
     double min_offset[2];
     /**
      * Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the default,
-     * allows every offset. If min_offset and max_offset are equal, the offset is fixed; equal bounds fix scale and
-     * rotation likewise.
+     * allows every offset. If min_offset and max_offset are equal, the offset is fixed; in the same way, equal bounds
+     * fix the scale and the rotation.
      */
     double max_offset[2];
     /** Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1. */
@@ -787,9 +787,9 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
  * its luminous opening as seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose
  * opening the eye sees edge-on, have no such area and are not rated.
  *
- * Each connected part of a mesh that emits is a source, as are the single lamps of an emission texture. Its luminance
- * is the mean over its visible part. Points darker than a tenth of the largest luminance of their material, such as
- * the glow around lamps in a texture, are not rated.
+ * Each connected part of a mesh that emits is a source, as are the single lamps of an emission texture. The luminance
+ * of such a source is the mean over its visible part. Points darker than a tenth of the largest luminance of their
+ * material, such as the glow around lamps in a texture, are not rated.
  * ================================================================================================================== */
 
 /**
@@ -814,7 +814,7 @@ typedef struct luxfer_observer_glare {
     /**
      * Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the sources in view, with their
      * luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible; 19 is
-     * the limit for offices. -infinity if no source is in view; infinity if one is in view and the background is
+     * the limit for offices. -infinity if no source is in view; infinity if a source is in view and the background is
      * black.
      */
     double ugr;
@@ -917,20 +917,21 @@ typedef struct luxfer_gonio_report {
 } luxfer_gonio_report;
 
 /**
- * Measures the distribution of count meshes of a scene, whose indices are in the array meshes; of all meshes if count
- * is 0, where meshes may be NULL. The intensities account for the light that the meshes block, reflect and transmit.
- * Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
+ * Measures the distribution of count meshes of a scene, whose indices are in the array meshes. If count is 0, the call
+ * measures all meshes of the scene, and meshes may be NULL. The intensities account for the light that the meshes
+ * block, reflect and transmit. Other meshes, lights, luminaires and the environment count as absent. params may be
+ * NULL for the defaults.
  *
- * The result is of absolute photometry, states no power and no colour, and has the name of the first mesh with a name.
- * Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts that
- * emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
+ * The new distribution has absolute photometry, states no power and no colour, and has the name of the first mesh that
+ * has a name. Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the
+ * parts that emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
  * intensities, which hold far from the luminaire, are right, but its glare, its pictures and the light close to it are
  * wrong.
  *
  * Intensities between the angles are interpolated linearly; the stated errors contain the noise of the paths only. The
  * caller releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
- * proportional to planes times angles times samples, seconds with the defaults. luxfer_job_start runs it as a job. Any
- * thread.
+ * proportional to planes times angles times samples, and is a few seconds with the defaults. luxfer_job_start runs it
+ * as a job. Any thread.
  * LUXFER_DEGENERATE if no mesh emits light, or if no light leaves the meshes, as from a closed room;
  * LUXFER_INVALID_ARGUMENT if a mesh does not exist, a setting is out of range, or the scene is not valid.
  */
@@ -1172,10 +1173,7 @@ typedef struct luxfer_pendants_params {
     uint32_t struct_size;
     /** 1, the default: all lamps of the mask have bodies of one shape and size; 0: each lamp has a body of its own. */
     uint32_t alike;
-    /**
-     * 1: all lamps hang at the same height, which requires alike = 1; 0, the default: each lamp hangs at its own
-     * height.
-     */
+    /** 1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own height. */
     uint32_t level;
     /**
      * 1, the default: each point of the mask's outline is moved to where the photo's luminance is the mean of the
@@ -1329,7 +1327,7 @@ typedef struct luxfer_pendant {
 /** The distance of the first lamp's top below the ceiling; with alike = 0, of every lamp's top. */
 #define LUXFER_KNOWN_DROP 1
 
-/** The largest diameter of the body, which is then the same for all lamps, also with alike = 0. */
+/** The largest diameter of the body. All lamps then have this diameter, also with alike = 0. */
 #define LUXFER_KNOWN_DIAMETER 2
 
 /** The horizontal distance between the axes of the first two lamps; with alike = 0 it determines no size. */
@@ -1344,13 +1342,13 @@ typedef struct luxfer_pendant {
  *
  * suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
  * no suspension is marked. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp has at
- * most one point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of
- * lamps, even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for
- * a lamp, and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
+ * most one point. pendants is an array of capacity structs; size is sizeof(luxfer_pendant). *count receives the number
+ * of lamps, even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds
+ * for a lamp, and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
  * LUXFER_DEGENERATE if the mask is empty, a lamp is too small, the photo's border cuts off more than 30 % of its
- * outline, or its outline is not that of a body of revolution: the message says what to paint. LUXFER_NOT_READY before
- * the job of view has succeeded; LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting
- * is out of range.
+ * outline, or its outline is not the outline of a body of revolution: the message says what to paint. LUXFER_NOT_READY
+ * before the job of view has succeeded; LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a
+ * setting is out of range.
  */
 luxfer_status luxfer_pendants_find(luxfer_context *context,
                                    luxfer_image *photo,

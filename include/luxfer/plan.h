@@ -85,7 +85,7 @@ luxfer_status luxfer_plan_create(luxfer_context *context, luxfer_plan **plan);
  * releases *job. Any thread.
  * LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
- * and the scene has none.
+ * and the scene has no camera.
  */
 luxfer_status luxfer_plan_start_render(luxfer_plan *plan,
                                        luxfer_render *render,

@@ -64,8 +64,8 @@ typedef struct luxfer_render_params {
     float preview;
     /**
      * Stop when luxfer_render_report.relative_error is at most this value, >= 0. With this target, paths go to the
-     * pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much as in
-     * bright ones. Default 0: no target. With several targets, rendering stops when all are reached.
+     * pixels where they reduce this error most. In this error, noise in dark areas counts as much as noise in bright
+     * areas, as for the eye. Default 0: no target. With several targets, rendering stops when all targets are reached.
      */
     float relative_error;
 } luxfer_render_params;
@@ -132,18 +132,19 @@ typedef struct luxfer_render_report {
 
 /**
  * The beauty image after a noise filter that follows the edges of the visible surfaces. The filter averages a pixel
- * with neighbours that differ from it by no more than the noise. A pixel keeps its unfiltered value where this value
- * is estimated to be more accurate, and never moves by more than three standard errors. Details that come from the
- * light alone, such as soft shadows, can be blurred; luxfer_render_report.preview_error estimates the remaining
- * error. The image exists only if luxfer_render_params.preview is not 0.
+ * with neighbours that differ from it by no more than the noise. A pixel keeps its unfiltered value if this value is
+ * estimated to be more accurate than the filtered value. The filter never changes a pixel by more than three standard
+ * errors. Details that come from the light alone, such as soft shadows, can be blurred;
+ * luxfer_render_report.preview_error estimates the remaining error. The image exists only if
+ * luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW 4
 
 /**
  * Half the width of the 95 % interval of each pixel of the preview, in cd/m²; 3 channels. The interval includes the
  * bias of the filter. It is infinite where a pixel has fewer than four paths. Measured in rooms with 4 to 256 paths
- * per pixel, the intervals contain the true value of 93 % to 98 % of the pixels; along edges of surfaces it is fewer.
- * The image exists only if luxfer_render_params.preview is not 0.
+ * per pixel, the intervals contain the true value of 93 % to 98 % of the pixels; along edges of surfaces, they contain
+ * it less often. The image exists only if luxfer_render_params.preview is not 0.
  */
 #define LUXFER_RENDER_PREVIEW_INTERVAL 5
 
@@ -154,7 +155,7 @@ luxfer_status luxfer_render_create(luxfer_context *context, luxfer_render **rend
 luxfer_status luxfer_render_set_scene(luxfer_render *render, luxfer_scene *scene);
 
 /**
- * Sets the camera. camera may be one that luxfer_scene_get_camera has written, or NULL, the default, for the first
+ * Sets the camera. camera may be a struct that luxfer_scene_get_camera has filled, or NULL, the default: the first
  * camera of the scene. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
  */
@@ -164,8 +165,8 @@ luxfer_status luxfer_render_set_camera(luxfer_render *render,
 /**
  * Starts a job that renders the scene. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
- * and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is out
- * of range.
+ * and the scene has no camera. The job may end with LUXFER_INVALID_ARGUMENT if the scene is not valid or a setting is
+ * out of range.
  */
 luxfer_status luxfer_render_start(luxfer_render *render,
                                   const luxfer_render_params *params,

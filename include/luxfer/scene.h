@@ -21,10 +21,10 @@ extern "C" {
  * as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
  * unchanged.
  *
- * Most limits are checked by the calls that set the values, but some depend on several calls. A scene is valid if no
- * light is above 1e15: no emission times a texel of its emission texture, no luminance of the faces of a luminaire, no
- * intensity. Calls and jobs that trace a scene which is not valid, export it or list its candidates for the ceiling
- * end with LUXFER_INVALID_ARGUMENT; the message names the object.
+ * Most limits are checked by the calls that set the values, but some depend on several calls. In a valid scene, all
+ * light is at most 1e15: each emission times each texel of its emission texture, each texel of the environment, each
+ * intensity, and the luminance of the faces of each luminaire. Calls and jobs that trace a scene which is not valid,
+ * export it or list its candidates for the ceiling end with LUXFER_INVALID_ARGUMENT; the message names the object.
  * ================================================================================================================== */
 
 /** A scene. See luxfer_scene_load and luxfer_scene_create. */
@@ -43,7 +43,10 @@ typedef int32_t (*luxfer_write_fn)(void *user, const void *data, size_t size);
 typedef struct luxfer_scene_counts {
     /** sizeof(luxfer_scene_counts), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below. */
+    /**
+     * Number of meshes. Their indices are 0 to meshes - 1; the objects that the fields below count are numbered in
+     * this way too.
+     */
     uint32_t meshes;
     /** Number of materials. */
     uint32_t materials;
@@ -118,10 +121,11 @@ luxfer_status luxfer_scene_get_counts(luxfer_scene *scene,
 /**
  * Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
  * the radiance of the environment is rgb in cd/m², each channel in [0, 1e15], from every direction. Otherwise the
- * radiance is an equirectangular image in linear values, multiplied by rgb; of its channels, the first three count, or
- * the first one as grey if there are fewer than three. A product above 1e15 makes the scene not valid. The centre of
- * the image is towards -z, its top towards +y, the centre of its right half towards +x. Light samples of the renderer
- * are drawn in proportion to the brightness of the image. The image is copied. Any thread.
+ * radiance is an equirectangular image in linear values, multiplied by rgb. An image with 3 or more channels starts
+ * with red, green and blue; of an image with 1 or 2 channels, the first channel is taken as grey. A product above 1e15
+ * makes the scene not valid. The centre of the image is towards -z, its top towards +y, the centre of its right half
+ * towards +x. Light samples of the renderer are drawn in proportion to the brightness of the image. The image is
+ * copied. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
  * budget.
  */
@@ -131,9 +135,10 @@ luxfer_status luxfer_scene_set_environment(luxfer_scene *scene,
 
 /**
  * Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
- * plane from which most of the room is visible. name is the name of the object or material, in UTF-8. An equal name is
- * sought first, then a name that differs only in upper and lower case, then the only name that contains name in any
- * case. Each step looks at the objects first, then at the materials. size is sizeof *found. Any thread.
+ * plane from which most of the room is visible. name is the name of the object or material, in UTF-8. The call looks
+ * first for an equal name, then for a name that differs only in upper and lower case, then for a name that contains
+ * name in any case, if there is exactly one. Each step looks at the objects first, then at the materials. size is
+ * sizeof *found. Any thread.
  * LUXFER_NOT_FOUND if no name fits, or if name is only a part of several names: the message lists names that exist;
  * LUXFER_DEGENERATE if there is no planar surface.
  */
@@ -204,7 +209,7 @@ static inline luxfer_status luxfer_scene_load_params_init(luxfer_scene_load_para
 
 /**
  * A luminaire shines from the faces of its luminous opening, with the size that its file states: a rectangle, a disc,
- * a box, a cylinder or an ellipsoid. In each direction, all points of the faces have the same luminance: the intensity
+ * a box, a cylinder or an ellipsoid. In each direction, all points of the faces have equal luminance: the intensity
  * divided by the projected area of the faces. The light is therefore right at any distance, and renderings show the
  * faces. A luminaire whose file states no size, or a size below 1 mm², shines from a point.
  */
@@ -597,13 +602,16 @@ typedef struct luxfer_distribution_report {
     /** Number of variants of the product in a GLDF container; 1 for all other formats. */
     uint32_t variants;
     /**
-     * Number of emitters whose distributions were added up: those of the file (TM-33) or of the variant that was read
-     * (GLDF); 1 for IES and EULUMDAT.
+     * Number of emitters whose distributions were added up. For TM-33, it counts the emitters of the file; for GLDF,
+     * the emitters of the variant that was read. 1 for IES and EULUMDAT.
      */
     uint32_t emitters;
 } luxfer_distribution_report;
 
-/** IES LM-63 (.ies), with photometry of type C, or of type B when read. */
+/**
+ * IES LM-63 (.ies) with photometry of type C. Files with photometry of type B are converted to type C when they are
+ * loaded.
+ */
 #define LUXFER_DISTRIBUTION_IES 0
 
 /** EULUMDAT (.ldt). */
@@ -615,14 +623,14 @@ typedef struct luxfer_distribution_report {
 /** GLDF container (.gldf): a product with variants, of which one is read. */
 #define LUXFER_DISTRIBUTION_GLDF 3
 
-/** Any of these formats: the content of the file decides which. */
+/** Any of these formats; the library recognises the format by the content of the file. */
 #define LUXFER_DISTRIBUTION_ANY 4
 
 /**
  * Loads a distribution from an .ies, .ldt, .xml (TM-33) or .gldf file; path is UTF-8. TM-33 and GLDF are recognised by
  * their content, whichever of these extensions the path has. After .gldf, the path may go on with # and the name, the
- * id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
- * releases *distribution. Any thread.
+ * id or the index from 0 of a variant, such as "lamp.gldf#black"; without such an addition, the first variant is read.
+ * The caller releases *distribution. Any thread.
  * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
  * LUXFER_UNSUPPORTED for photometry of type A, for photometry of type B in TM-33 files, for a GLDF container that
  * gives only the web address of its photometry, and for files without luminous intensities, for example with radiant
@@ -671,8 +679,8 @@ luxfer_status luxfer_distribution_get_name(luxfer_distribution *distribution,
 /**
  * Gets the luminous intensity in candela in one direction. Both angles are in degrees and finite: c is the angle of
  * the C plane, which turns around the axis of the luminaire; gamma is the angle from straight down (0) to straight up
- * (180). The intensity is interpolated linearly between the angles of the file, and is 0 for gamma outside them. Any
- * thread.
+ * (180). The intensity is interpolated linearly between the angles of the file, and is 0 if gamma lies outside the
+ * angles of the file. Any thread.
  * LUXFER_INVALID_ARGUMENT if an angle is not finite.
  */
 luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distribution,
@@ -955,7 +963,7 @@ typedef struct luxfer_mesh_info {
     uint64_t triangle_count;
     /** 1 if each vertex has a normal, 0 if triangles are shaded flat. */
     uint32_t has_normals;
-    /** Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second. */
+    /** Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second set. */
     uint32_t uv_sets;
     /** 1 if each vertex has a colour, else 0. */
     uint32_t has_colours;

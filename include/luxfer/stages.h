@@ -104,8 +104,8 @@ typedef struct luxfer_rectify_params {
     uint32_t reserved;
     /**
      * Limit of the magnification by unwarping, a ratio of lengths in (0, 1e6]; default 16. The farther a part of the
-     * plane is from the camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the
-     * nearest part by more than this factor are cut off.
+     * plane is from the camera, the more its photo pixels are magnified. Parts that are magnified more than this
+     * factor times as much as the nearest part are cut off.
      */
     double max_magnification;
     /** Seed of the search; default 1. */
@@ -145,8 +145,8 @@ typedef struct luxfer_rectify_report {
     /** Standard deviation of the direction to each vanishing point in camera space, in radians. */
     double vanishing_errors[3];
     /**
-     * Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from the
-     * others, or from the assumption that the camera is upright.
+     * Number of segments that run to each vanishing point; 0: no segment runs to the point, which is then derived from
+     * the other vanishing points, or from the assumption that the camera is upright.
      */
     uint32_t vanishing_support[3];
     /** Source of the focal length: a LUXFER_FOCAL_ value. */
@@ -196,8 +196,8 @@ typedef struct luxfer_rectify_report {
     /** Standard deviations of the field squareness; NaN where squareness is NaN. */
     double squareness_errors[3];
     /**
-     * The distortion that was undone, in the unit of the field distortion: the one that
-     * luxfer_rectify_params.distortion sets, else the measured one; 0 if none was undone.
+     * The distortion that was undone, in the unit of the field distortion; 0 if no distortion was undone. It equals
+     * luxfer_rectify_params.distortion or, if that is NaN, the measured distortion.
      */
     double undone;
 } luxfer_rectify_report;
@@ -304,7 +304,7 @@ luxfer_status luxfer_rectify_get_image(luxfer_rectify *rectify,
 /**
  * Undoes the distortion of the lens in an image of the photo's size, such as the photo or a mask: makes the image that
  * an ideal lens would have taken, with the same size and principal point. Pixels beyond the image are 0. If no
- * distortion was undone, the new image equals the old one. The caller releases *undistorted. Any thread.
+ * distortion was undone, the new image equals the given image. The caller releases *undistorted. Any thread.
  * LUXFER_NOT_READY before a job has succeeded; LUXFER_INVALID_ARGUMENT if the image has not the photo's size.
  */
 luxfer_status luxfer_rectify_undistort(luxfer_rectify *rectify,
@@ -468,9 +468,9 @@ luxfer_status luxfer_features_set_view(luxfer_features *features,
 /**
  * Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
  * prefers rooms in which one surface, such as the ceiling, contains all positive strokes (of both phases,
- * LUXFER_PHASE_PLANE and LUXFER_PHASE_LIGHTS) and none of the negative strokes of LUXFER_PHASE_PLANE. The strokes have
- * no effect if the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL
- * removes them. Any thread.
+ * LUXFER_PHASE_PLANE and LUXFER_PHASE_LIGHTS) and no negative stroke of LUXFER_PHASE_PLANE. The strokes have no effect
+ * if the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL removes
+ * them. Any thread.
  * LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
  */
 luxfer_status luxfer_features_set_strokes(luxfer_features *features,
@@ -549,10 +549,10 @@ typedef struct luxfer_segment_params {
     /** Seed of the samples that are drawn; default 1. */
     uint64_t seed;
     /**
-     * Smallest contrast that the refinement by refine_radius follows. Where the standard deviation of the first three
-     * channels within one of its windows is below this value, the refinement smooths the mask; where it is above, the
-     * mask follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8. No
-     * effect if refine_radius is 0.
+     * Smallest contrast that the refinement by refine_radius follows. In windows in which the standard deviation of
+     * the first three channels is below this value, the refinement smooths the mask; in other windows, the mask
+     * follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8. No effect
+     * if refine_radius is 0.
      */
     double refine_tolerance;
     /**
@@ -588,7 +588,7 @@ typedef struct luxfer_segment_report {
     uint64_t negative_samples;
     /** Number of samples of the positive class. */
     uint64_t positive_samples;
-    /** Number of pixels that strokes of both classes cover. Each of them belongs to the later stroke. */
+    /** Number of pixels that strokes of both classes cover. Such a pixel belongs to the later stroke. */
     uint64_t contradictory_pixels;
 } luxfer_segment_report;
 
@@ -616,8 +616,8 @@ typedef struct luxfer_segment_report {
 /**
  * A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the ten channels
  * of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the wall, the floor or the
- * ceiling that the positive strokes lie on. If the strokes lie on more than one of these, only those connected parts
- * of the mask remain that positive strokes touch.
+ * ceiling that the positive strokes lie on. If the positive strokes lie on several of these surfaces, the mask keeps
+ * only its connected parts that positive strokes touch.
  */
 #define LUXFER_SUBJECT_SURFACE 1
 
@@ -699,14 +699,15 @@ typedef int32_t luxfer_emission_law;
  * In settings only: the law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept
  * unless another law predicts the lamps clearly better. If luxfer_emission_report.error of the texture then exceeds 1,
  * and there is a single exemplar, the other laws are tried, and the texture with the smallest error is kept. The
- * emission has the warning LUXFER_WARNING_NO_PATTERN even then.
+ * emission has the warning LUXFER_WARNING_NO_PATTERN even if another law gives a better texture.
  */
 #define LUXFER_LAW_BEST 0
 
 /**
- * In settings only: the law follows from the periods in the autocorrelation of the lights: LUXFER_LAW_LATTICE for two
- * periods, LUXFER_LAW_ROW for one, and for none LUXFER_LAW_FREE or, if the exemplar shows few lamps, LUXFER_LAW_WHOLE.
- * A period counts only if the correlation after a shift by this period is at least the setting min_regularity.
+ * In settings only: the law follows from the periods in the autocorrelation of the lights. Two periods give
+ * LUXFER_LAW_LATTICE, one period gives LUXFER_LAW_ROW. Without a period, the law is LUXFER_LAW_WHOLE if the exemplar
+ * shows few lamps or one isolated group of lamps, and otherwise LUXFER_LAW_FREE. A period counts only if the
+ * correlation after a shift by this period is at least the setting min_regularity.
  */
 #define LUXFER_LAW_CORRELATION 1
 
@@ -773,9 +774,10 @@ typedef struct luxfer_emission_params {
     uint32_t whole_lamps;
     /**
      * Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-     * default 0. With LUXFER_LAW_FREE, the offset shifts all lamps if the texture is tileable and no light is copied
-     * patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or the job ends
-     * with LUXFER_INVALID_ARGUMENT; with whole_lamps = 0 it has no effect.
+     * default 0. LUXFER_LAW_FREE has no lattice that an offset could shift: with this law, an offset other than 0 ends
+     * the job with LUXFER_INVALID_ARGUMENT. There are two exceptions. If the texture is tileable and no light is
+     * copied patch by patch (luxfer_emission_get_luminaire says which lights are), the offset shifts all lamps. With
+     * whole_lamps = 0, the offset has no effect.
      */
     double offset[2];
     /**
@@ -820,10 +822,10 @@ typedef struct luxfer_emission_params {
     uint32_t clean_lamps;
     /**
      * Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
-     * magnifies distant parts of the plane more than near ones. The magnification of a pixel is a length in the
-     * unwarped photo divided by the same length in the photo; the relative magnification is this ratio divided by that
-     * of the least magnified pixel of the exemplar. Pixels beyond the limit are left out, as if the photo did not show
-     * them.
+     * magnifies distant parts of the plane more than near parts. The magnification of a pixel is its length in the
+     * unwarped photo divided by its length in the photo; the relative magnification is the magnification of the pixel
+     * divided by the magnification of the least magnified pixel of the exemplar. Pixels beyond the limit are left out,
+     * as if the photo did not show them.
      */
     double max_magnification;
 } luxfer_emission_params;
@@ -839,7 +841,8 @@ typedef int32_t luxfer_emission_image;
 /**
  * Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality. A
  * composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error is 0.
- * If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
+ * If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first
+ * exemplar.
  */
 typedef struct luxfer_emission_report {
     /** sizeof(luxfer_emission_report), set by the function that fills the struct. */
@@ -867,10 +870,10 @@ typedef struct luxfer_emission_report {
     uint32_t exemplar_lamps;
     /**
      * Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
-     * ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
-     * of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
-     * indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a composition,
-     * and if the texture is too small to hold parts as large as the exemplar at clearly different places.
+     * ceiling. It is the root mean square difference between the three statistics of the whole texture and the
+     * statistics of parts of the texture that are as large as the exemplar. If error is at most twice this value, it
+     * does not indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a
+     * composition, and if the texture is too small to hold parts as large as the exemplar at clearly different places.
      */
     float sampling_error;
     /** The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value. */
@@ -889,9 +892,8 @@ typedef struct luxfer_emission_report {
     double law_score;
     /**
      * law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is NaN.
-     * LUXFER_LAW_BEST prefers two kinds of laws: the one that LUXFER_LAW_CORRELATION would choose, and lattices along
-     * the axes of the room. If it has kept a preferred law although runner_up scores slightly better, the value is
-     * negative.
+     * LUXFER_LAW_BEST prefers the law that LUXFER_LAW_CORRELATION would choose, and lattices along the axes of the
+     * room. If it has kept a preferred law although runner_up scores slightly better, the value is negative.
      */
     double margin;
 } luxfer_emission_report;
@@ -915,8 +917,8 @@ typedef struct luxfer_luminaire {
     /** Mean linear RGB colour, where 1 is the photo's white. */
     float colour[3];
     /**
-     * Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %, are of
-     * one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
+     * Number of the lamp's kind, from 1. Lamps of about equal size and shape, whose areas and sides differ by at most
+     * 25 %, are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
      */
     uint32_t kind;
 } luxfer_luminaire;
@@ -937,7 +939,7 @@ typedef struct luxfer_luminaire {
 #define LUXFER_EMISSION_EXEMPLAR_GUIDES 2
 
 /**
- * The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_GUIDES,
+ * The guide channels of the texture, at the resolution of LUXFER_EMISSION_EXEMPLAR_GUIDES: pixels of that image,
  * copied with the patches that give the texture its colours.
  */
 #define LUXFER_EMISSION_GUIDES 3
@@ -967,7 +969,7 @@ luxfer_status luxfer_emission_set_photo(luxfer_emission *emission,
                                         const double *to_photo);
 
 /**
- * Starts a job that makes the whole texture in memory. For textures that are too large for that, use
+ * Starts a job that makes the whole texture in memory. For textures that are too large for the memory, use
  * luxfer_emission_start_composition. params may be NULL for the defaults. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
  * LUXFER_DEGENERATE if the exemplar has no lights, or if the setting law asks for a lattice or a row that the lights
@@ -1037,11 +1039,11 @@ luxfer_status luxfer_emission_get_corner(luxfer_emission *emission,
  * ================================================================================================================== */
 
 /**
- * Adds a further exemplar, whose lights are mixed with those of the first one: the image weights states, for each
- * place of the texture, the share of the lamps that come from the new exemplar. The images unwarped, light and valid
- * are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
- * luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. Any
- * thread.
+ * Adds an exemplar. The texture then mixes the lights of all exemplars: for each place of the texture, the image
+ * weights states the share of the lamps that come from the added exemplar. The arguments unwarped, light and valid
+ * have the meanings that they have for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo have the
+ * meanings that they have for luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per
+ * texel, in [1e-3, 1e3]. Any thread.
  *
  * The image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
  * added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
@@ -1076,12 +1078,12 @@ luxfer_status luxfer_emission_start_composition(luxfer_emission *emission,
                                                 luxfer_job **job);
 
 /**
- * Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
- * of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. Whatever the sizes and
- * the order of the tiles, they equal, to the bit, the texture and the mask that luxfer_emission_start makes with the
- * same settings, unless LUXFER_LAW_BEST makes luxfer_emission_start try other laws, which a composition never does.
- * The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads may render tiles
- * at the same time.
+ * Renders a rectangle (a tile) of a composed texture: width x height texels, whose top-left texel is texel (x, y) of
+ * the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. Tiles of any sizes,
+ * rendered in any order, equal to the bit the texture and the mask that luxfer_emission_start makes with these
+ * settings, unless LUXFER_LAW_BEST makes luxfer_emission_start try other laws, which a composition never does. The
+ * call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads may render tiles at
+ * the same time.
  * LUXFER_NOT_READY before a job of luxfer_emission_start_composition has succeeded; LUXFER_INVALID_ARGUMENT if the
  * rectangle is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
  */
@@ -1185,9 +1187,9 @@ typedef struct luxfer_relight_report {
 
 /**
  * The sum, over all points of the target surface, of the squared difference between light and target value should be
- * smallest. A gradient descent on the texels of the emission minimises the same sum. Bright points count more, so the
- * emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor 1/(1+CV²), where CV is
- * the coefficient of variation (standard deviation divided by mean) of the light over the target surface.
+ * smallest. A gradient descent on the texels of the emission would minimise this sum too. Bright points count more, so
+ * the emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor 1/(1+CV²), where CV
+ * is the coefficient of variation (standard deviation divided by mean) of the light over the target surface.
  */
 #define LUXFER_FIT_LEAST_SQUARES 1
 
@@ -1239,7 +1241,8 @@ luxfer_status luxfer_relight_set_scene(luxfer_relight *relight,
 
 /**
  * Sets rgb, the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
- * LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
+ * LUXFER_QUANTITY_INCIDENT, rgb is the radiance that a white surface would have in place of the target: illuminance /
+ * pi. Any thread.
  * LUXFER_INVALID_ARGUMENT if a channel is out of range.
  */
 luxfer_status luxfer_relight_set_target(luxfer_relight *relight,

@@ -123,11 +123,12 @@ luxfer_status luxfer_guides_get_image(luxfer_guides *guides,
  * the offset x (right) and y (down), in pixels, to the position of the pixel's surface point in the previous frame. It
  * is NaN where the previous frame does not show the point. The caller releases *motion. Any thread.
  *
- * The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes with
- * the same name, number of vertices and triangle indices count as one object. If several meshes share all three, and
- * both frames have the same number of them, they correspond in their order. If an object has no counterpart in the
- * previous frame, its motion is NaN, and luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has
- * the motion of the mirror or pane itself, not of the objects that are seen in it.
+ * The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. A mesh of the
+ * current frame and a mesh of the previous frame are one object if they have equal names, numbers of vertices and
+ * triangle indices. If several meshes of a frame are equal in all three, they correspond in their order, provided that
+ * the other frame has as many of them. If an object has no counterpart in the previous frame, its motion is NaN, and
+ * luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has the motion of the mirror or pane
+ * itself, not of the objects that are seen in it.
  * LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
  */
 luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
@@ -139,10 +140,10 @@ luxfer_status luxfer_guides_get_motion(luxfer_guides *guides,
  *
  * Presets and settings. StyLit is the paper of Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based
  * Stylization of 3D Renderings". As in StyLit, exemplar patches are matched with target patches in several passes. In
- * each pass, every exemplar patch finds its nearest target patch among those that are still free. The pairs are
- * accepted, smallest error first, until the sum of their errors reaches the error budget, which the library computes
- * from the errors of the pass. This prevents a few patches from being used everywhere, and bad matches from being
- * forced. The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
+ * each pass, every exemplar patch finds the nearest target patch that has no match yet. The pairs are accepted,
+ * smallest error first, until the sum of their errors reaches the error budget, which the library computes from the
+ * errors of the pass. This prevents a few patches from being used everywhere, and bad matches from being forced. The
+ * defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
  * ================================================================================================================== */
 
 /**
@@ -167,7 +168,8 @@ typedef struct luxfer_stylize_params {
     /** Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH. */
     luxfer_stylize_search search;
     /**
-     * Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if the images are smaller than that.
+     * Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if an image is smaller than one
+     * patch.
      */
     uint32_t patch;
     /**
@@ -244,8 +246,8 @@ typedef struct luxfer_stylize_params {
      */
     float coherence;
     /**
-     * Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the target's
-     * light guides, in [0, 1]; 0, the default: not at all.
+     * Degree to which the exemplar's light guides are adapted, in brightness and contrast, to the target's light
+     * guides, in [0, 1]; 0, the default: not at all.
      */
     float match_appearance;
     /** Must be 0. */
@@ -379,9 +381,9 @@ luxfer_status luxfer_stylize_set_artwork(luxfer_stylize *stylize,
                                          luxfer_image *artwork);
 
 /**
- * Adds a guide, or replaces the guide of the same name. The image source shows the exemplar scene, and the image
- * target shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the
- * target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). name is UTF-8.
+ * Adds a guide, or replaces the guide that has this name. The image source shows the exemplar scene, and the image
+ * target shows the scene to paint; both have equal numbers of channels. If target is NULL, source serves as the target
+ * too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). name is UTF-8.
  * weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
  *
  * All sources must have one size, and all targets one size. All guides together have at most 60 channels. In a
@@ -464,12 +466,11 @@ luxfer_status luxfer_stylize_start(luxfer_stylize *stylize,
 
 /**
  * Starts a job that updates the picture after the artist has changed the artwork. artwork is the new artwork, with
- * the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
- * from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
- * the time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if
- * the artwork changes there. At the border of these pixels, the update lets a step in colour fade out into the new
- * paint, in the same way as luxfer_stylize_start; unlike luxfer_stylize_start, it does not continue strokes across the
- * border anew. The caller releases *job. Any thread.
+ * the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs from the
+ * old artwork. The pixels of the picture that were painted from these places are painted again, in a fraction of the
+ * time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if the
+ * artwork changes there. At the border of these pixels, luxfer_stylize_start continues strokes, and lets a step in
+ * colour fade out into the new paint; an update only lets the step fade out. The caller releases *job. Any thread.
  * LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
  * with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
  * too.
@@ -488,8 +489,8 @@ luxfer_status luxfer_stylize_update(luxfer_stylize *stylize,
  * inverse mask with the artwork as the known picture. The painted pixels stay as they are. The new paint continues
  * strokes across the border of the painted part, and this border is hardly visible. To avoid visible copies, the
  * library hardly ever uses a patch of the artwork more than 100 times as often as the average patch. If the painted
- * part lacks light that the rest shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place
- * where the artist should paint.
+ * part lacks light that the unpainted part shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a
+ * place where the artist should paint.
  * LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
  * size or has more than 1 channel.
  */
@@ -539,9 +540,9 @@ typedef struct luxfer_stylize_report {
     /** Number of target pixels with a guide value that is not finite and was taken as 0. */
     uint64_t broken_target;
     /**
-     * Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the others are blends of
-     * several artwork pixels. LUXFER_STYLIZE_VOTE_ADAPTIVE gives rough paint a larger share than smooth paint.
-     * luxfer_stylize_update leaves this value as the last full run has set it.
+     * Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the other painted pixels are
+     * blends of several artwork pixels. LUXFER_STYLIZE_VOTE_ADAPTIVE gives rough paint a larger share than smooth
+     * paint. luxfer_stylize_update leaves this value as the last full run has set it.
      */
     double unblended_share;
     /**
@@ -657,9 +658,9 @@ luxfer_status luxfer_sheet_print(luxfer_image *picture,
 /**
  * Aligns a photo or scan (linear RGB) of a painted sheet with the picture of width x height pixels for which the
  * sheet was printed. The call finds the marks in the photo and resamples the photo to the pixels of the picture: the
- * result is the artwork, in linear RGB. params must be equal to those of luxfer_sheet_print; NULL stands for the
- * defaults. The photo may be rotated and in perspective. size is sizeof *report; report may be NULL, then size does
- * not matter. The call takes up to a few seconds. The caller releases *artwork. Any thread.
+ * result is the artwork, in linear RGB. params must be equal to the settings given to luxfer_sheet_print; NULL stands
+ * for the defaults. The photo may be rotated and in perspective. size is sizeof *report; report may be NULL, then size
+ * does not matter. The call takes up to a few seconds. The caller releases *artwork. Any thread.
  * LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_sheet_align(luxfer_image *photo,

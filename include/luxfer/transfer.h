@@ -252,7 +252,7 @@ luxfer_status luxfer_transfer_set_texture(luxfer_transfer *transfer,
 
 /**
  * Sets the camera of the rendered picture. camera may be NULL, the default: the first camera of the scene, or a camera
- * in a corner of the room if the scene has none. Any thread.
+ * in a corner of the room if the scene has no camera. Any thread.
  * LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
  */
 luxfer_status luxfer_transfer_set_camera(luxfer_transfer *transfer,
@@ -280,7 +280,7 @@ luxfer_status luxfer_transfer_set_zones(luxfer_transfer *transfer,
 /**
  * Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify. If that object has unwarped
  * a plane, this plane replaces the result of the stage UNWARP. The transfer then keeps this camera, even if the
- * photo's lamps suggest another one. Any thread.
+ * photo's lamps suggest another camera. Any thread.
  * LUXFER_NOT_READY if rectify has no result yet.
  */
 luxfer_status luxfer_transfer_use_rectify(luxfer_transfer *transfer,
@@ -572,7 +572,7 @@ luxfer_status luxfer_transfer_save_fixtures(luxfer_transfer *transfer,
 /** A list of warnings. See luxfer_get_warnings. */
 typedef struct luxfer_warnings luxfer_warnings;
 
-/** The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added. */
+/** The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new values may be added. */
 typedef int32_t luxfer_warning_code;
 
 /** A warning: a reason to doubt a result. */
@@ -678,12 +678,13 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_MAGNIFIED 13
 
 /**
- * The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the viewing
- * ray, the median over the plane; it is below the limit. The warning points to the point with the smallest angle.
+ * The camera sees the plane nearly edge-on. The severity is the median, over the plane, of the sine of the angle
+ * between the plane and the viewing ray; it is below the limit. The warning points to the point with the smallest
+ * angle.
  */
 #define LUXFER_WARNING_PLANE_NEAR_HORIZON 14
 
-/** The statistics of the texture differ from those of the photo; the severity is luxfer_emission_report.error. */
+/** The texture and the photo differ in the statistics of their lamps; the severity is luxfer_emission_report.error. */
 #define LUXFER_WARNING_PATTERN_UNCERTAIN 15
 
 /**
@@ -710,8 +711,8 @@ typedef struct luxfer_warning {
 
 /**
  * A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the implausible
- * height or width in metres. For a scene that is too small, it is the larger of the two, and is below the limit. The
- * message names the likely unit.
+ * height or width in metres. For a scene that is too small, it is the larger of height and width, and is below the
+ * limit. The message names the likely unit.
  */
 #define LUXFER_WARNING_IMPLAUSIBLE_SIZE 20
 
@@ -757,7 +758,7 @@ typedef struct luxfer_warning {
 /**
  * Objects that this frame of a sequence shows are missing in the previous frame, or have other triangles there. Their
  * motion is unknown and therefore NaN. The severity is the share of the picture that shows these objects; the message
- * names them. The warning points to a pixel of the largest one.
+ * names them. The warning points to a pixel of the largest of these objects.
  */
 #define LUXFER_WARNING_NO_COUNTERPART 27
 
@@ -780,15 +781,15 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_LIGHT_NOT_PAINTED 29
 
 /**
- * Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The severity is
- * the share of the exemplar that such places cover. The warning points to one of them in the artwork.
+ * Places of the exemplar with equal guides are painted in two ways, which a stylisation mixes. The severity is the
+ * share of the exemplar that such places cover. The warning points to one of them in the artwork.
  */
 #define LUXFER_WARNING_AMBIGUOUS_PAINT 30
 
 /**
- * A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is
- * the difference in paint between this place and those places, divided by the difference in paint that places with
- * equal guides typically have. The warning points to the place in the artwork.
+ * A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is the
+ * difference in paint from this place that all but 5 % of the places with similar guides exceed, divided by the
+ * typical difference in paint between places with equal guides. The warning points to the place in the artwork.
  */
 #define LUXFER_WARNING_BLEMISH 31
 

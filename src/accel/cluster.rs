@@ -3,8 +3,8 @@
 //!
 //! The leaves arrive sorted by Morton code. Their list is split recursively at the highest bit in which the codes
 //! differ, that is, between the two halves of a cell of space. On the way back up, the clusters of two neighbouring
-//! ranges are merged until at most [`FEW_CLUSTERS`] are left. The best partner of a cluster is the one with which it
-//! forms the box of smallest area. Two clusters merge if each is the best partner of the other.
+//! ranges are merged until at most [`FEW_CLUSTERS`] are left. The best partner of a cluster is the cluster with which
+//! it forms the box of smallest area. Two clusters merge if each is the best partner of the other.
 //!
 //! On regular grids, such as tessellated walls, many candidate partners form boxes of equal area. In such a tie,
 //! cluster `i` prefers the partner `j` with the smallest `i XOR j`. This preference is mutual, so a row of equal

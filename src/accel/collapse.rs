@@ -161,7 +161,7 @@ impl Choice<'_> {
             return Ok(wide);
         }
         // Fill each page of memory with nodes that a ray is likely to visit together. Start with one node. Of the
-        // children of nodes in the page, repeatedly add the one of largest area. Children that do not fit start new
+        // children of nodes in the page, repeatedly add the child of largest area. Children that do not fit start new
         // pages.
         let mut roots = vec![Open { place: root, area: 0.0, parent: None, stack_depth: 0 }];
         let mut open = Vec::new();

@@ -2,8 +2,8 @@
 //! wide subtree is a packet of triangles, or a node of eight children with all below it.
 //!
 //! By the surface area heuristic, a ray that hits a parent's box also hits a child's box with the probability a / A.
-//! Here a and A are the surface areas of the child's and of the parent's box. The costs of a subtree follow from those
-//! of its two halves (Ylitie et al. 2017, section 3.1).
+//! Here a and A are the surface areas of the child's and of the parent's box. The costs of a subtree follow from the
+//! costs of its two halves (Ylitie et al. 2017, section 3.1).
 
 use super::packet::WIDTH;
 use super::pages;
@@ -122,7 +122,7 @@ impl CostedPart {
         Ok(this)
     }
 
-    /// Computes the costs of branch `at` from those of its two halves, the first of which is branch `first`.
+    /// Computes the costs of branch `at` from the costs of its two halves, the first of which is branch `first`.
     fn compute_costs(&mut self, at: usize, first: usize) {
         let (l, r) = (&self.branches[first], &self.branches[first + 1]);
         let (count, surface, area) = (l.count + r.count, l.surface + r.surface, self.branches[at].area);

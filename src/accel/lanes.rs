@@ -23,12 +23,12 @@ pub(super) trait Lanes: Copy {
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
-    /// The smaller value per lane. If one operand is NaN, the result is `other`; `max` treats NaN likewise.
+    /// The smaller value per lane. If one operand is NaN, the result is `other`; this holds for `max` too.
     fn min(self, other: Self) -> Self;
     fn max(self, other: Self) -> Self;
     fn abs(self) -> Self;
-    /// In each lane, replaces the bits that are set in `mask` by those of `others`, which must have no bits outside the
-    /// mask.
+    /// In each lane, replaces the bits that are set in `mask` by the bits of `others`, which must have no bits outside
+    /// the mask.
     fn with_bits(self, mask: u32, others: &[u32; 8]) -> Self;
     /// `self * factor + term`, rounded once or twice depending on the processor. Use it only for bounds that have a
     /// margin.
@@ -41,7 +41,7 @@ pub(super) trait Lanes: Copy {
     /// Returns an integer whose bit `i` is set if lane `i` is true.
     fn bits(mask: Self::Mask) -> u32;
     /// Writes `payload[i]` as a `u64` for every lane `i` in `mask`, in lane order and without gaps. It may overwrite
-    /// all eight entries at `to`: those that the mask does not fill receive arbitrary values.
+    /// all eight entries at `to`: entries that the mask does not fill receive arbitrary values.
     ///
     /// # Safety
     /// Eight entries must be writable at `to`.

@@ -21,8 +21,8 @@ pub(super) struct Packet {
 }
 
 impl Packet {
-    /// Packs one to eight triangles: those whose indices in the list `triangles` are `ids`. Unused lanes are filled
-    /// with NaN, so no ray hits them.
+    /// Packs one to eight triangles, whose indices in the list `triangles` are `ids`. Unused lanes are filled with NaN,
+    /// so no ray hits them.
     pub fn new(triangles: &[[Vec3; 3]], ids: &[u32]) -> Self {
         let mut packet = Self { corners: [[Row([f32::NAN; 8]); 3]; 3], ids: [u32::MAX; WIDTH] };
         for (lane, &id) in ids.iter().enumerate() {
@@ -48,8 +48,8 @@ impl Packet {
         self.ids.iter_mut().filter(|id| **id != u32::MAX).for_each(|id| *id = ids[*id as usize]);
     }
 
-    /// Returns a mask of the triangles hit, and a hit for each lane; only those in the mask are meaningful. A hit
-    /// counts if its distance is at most `t_max` and exceeds its own rounding error.
+    /// Returns a mask of the triangles hit, and a hit for each lane; only hits of lanes in the mask are meaningful. A
+    /// hit counts if its distance is at most `t_max` and exceeds its own rounding error.
     #[inline(always)]
     pub fn intersect<L: Lanes>(&self, ray: &TriangleRay, t_max: f32) -> (u32, PacketHits<L>) {
         let [x, y, z] = self.sheared::<L>(ray);

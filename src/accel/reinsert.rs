@@ -7,7 +7,7 @@
 //! 2. Make these moves one after another, largest gain first. Skip a move if an earlier move of the round has changed
 //!    one of its nodes.
 //!
-//! The search order differs from the paper: of two children, the one with the larger possible gain is searched first.
+//! The search order differs from the paper: of two children, the child with the larger possible gain is searched first.
 //! A child below which no position can beat the best one so far is skipped.
 
 use super::pages;

@@ -13,8 +13,8 @@ use glam::DVec2;
 
 /// Measurements of an exemplar, in unwarped pixels.
 pub struct Measurements {
-    /// Medians of the longer side and of the shorter side over the whole lamps: those that the exemplar shows
-    /// completely, or that count as whole. 0 without a whole lamp.
+    /// Medians of the longer side and of the shorter side over the whole lamps: lamps that the exemplar shows
+    /// completely, and lamps that count as whole. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
     /// Median, over the whole lamps, of the share of its bounding box that a lamp covers: 1 for rectangles along the
     /// axes, π/4 for discs. 0 without a whole lamp.

@@ -11,7 +11,8 @@
 //!    compares it with other laws by which the pattern may continue, such as a single row, and chooses one.
 //! 3. [`quilt`] computes metadata of each pixel (confidence that it is light, signed x and y distance to the nearest
 //!    light), and quilts colour and metadata with minimum-error seams. On a lattice, patches are shifted by whole
-//!    periods only. Patches are chosen so that the lit share of the texture stays close to that of the exemplar.
+//!    periods only. Patches are chosen so that the lit share of the texture stays close to the lit share of the
+//!    exemplar.
 //! 4. [`lamps`] finds each lamp of the quilted texture and copies it as a whole, so that no seam cuts it. It also
 //!    measures the outline, kind and colour of each lamp.
 //! 5. [`compose`] plans the positions of lamps and patches, renders the texels from the photo at full resolution, and
@@ -131,7 +132,7 @@ pub fn blend(input: &Input, styles: &[Style], params: &Params, job: Job) -> Resu
 }
 
 /// Like [`blend`], but reuses the analysis of the first exemplar that [`measure`] has made. Repeats the analysis if the
-/// size of the input, or a setting that affects the analysis, differs from that of `measure`.
+/// size of the input, or a setting that affects the analysis, differs from the size or setting of `measure`.
 pub fn blend_measured(
     measured: Measurements,
     input: &Input,

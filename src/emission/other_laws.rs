@@ -19,7 +19,7 @@ use std::mem::discriminant;
 const OTHER_LAWS: [LawMode; 4] = [LawMode::Lattice, LawMode::Row, LawMode::Whole, LawMode::Free];
 
 /// Returns the texture that differs least from the photo: `first`, or a texture by another law. Other laws are tried
-/// only if `params` leave the law open, and if the error of `first` exceeds that of a texture without light.
+/// only if `params` leave the law open, and if the error of `first` exceeds the error of a texture without light.
 ///
 /// The error of a texture by another law is the larger of two differences: from the statistics that this law expects,
 /// and from the statistics that the law of `first` expects. The second difference is needed because each law weights

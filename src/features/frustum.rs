@@ -19,7 +19,7 @@ pub struct Frustum {
     pub bottom: f32,
     pub near: f32,
     pub far: f32,
-    /// Distortion of the lens; the bounds are those of an ideal lens.
+    /// Distortion of the lens; the bounds hold for an ideal lens.
     pub lens: Radial,
 }
 
@@ -133,7 +133,7 @@ mod tests {
         let ray = frustum.ray(frustum.ndc(17, 400, 640, 480)).as_dvec3();
         let expected: DVec3 = camera.ray(DVec2::new(17.5, 400.5));
         assert!((ray - expected).length() < 1e-6);
-        // With a lens, too: the pixel's coordinates are those of an ideal lens.
+        // With a lens, too: the pixel's coordinates then refer to an ideal lens.
         let bent = Perspective { bend: -0.05 / (320.0f64 * 320.0 + 240.0 * 240.0), ..camera };
         let frustum = Frustum::of_camera(&bent, 640, 480, 1.0, 10.0).unwrap();
         let ray = frustum.ray(frustum.ndc(17, 400, 640, 480)).as_dvec3();

@@ -4,8 +4,8 @@
 //! Two classes of strokes compete: positive strokes, on the plane, and negative strokes, on other surfaces. The cost of
 //! a path is the largest gradient of colour along it. The cost of a class at a pixel is the lowest cost of a path from
 //! its strokes to the pixel. The pixel goes to the class of lower cost, if this cost is small and clearly lower than
-//! that of the other class. A wall and a ceiling of one colour are thus separated at the seam between them, even if the
-//! seam is faint. Pixels behind strong edges go to neither class.
+//! the cost of the other class. A wall and a ceiling of one colour are thus separated at the seam between them, even if
+//! the seam is faint. Pixels behind strong edges go to neither class.
 
 use super::input::PlaneStroke;
 use crate::error::Result;

@@ -18,8 +18,8 @@ pub const MAX_SEGMENTS: usize = 160;
 /// segments do not outweigh all others. [bench features:layouts]
 const MAX_LENGTH: f64 = 0.25;
 /// Segments propose distances of a side of the box. Only distances within this range count, in units of the distance to
-/// the back wall. The range is far wider than that of the sides of rooms in photos (see `MIN_SIDE` of the search). It
-/// excludes segments near the vanishing point and segments near a right angle to the view. [convention]
+/// the back wall. The range is far wider than the range of the sides of rooms in photos (see `MIN_SIDE` of the search).
+/// It excludes segments near the vanishing point and segments near a right angle to the view. [convention]
 const PROPOSED_SIDES: std::ops::Range<f64> = 0.02..20.0;
 /// Two segments propose the same distance of a side if the logarithms of their distances differ by less than this.
 /// [bench features:layouts]
@@ -55,8 +55,8 @@ struct RoomSegment {
 }
 
 /// Sample points of the segments that run along one room axis. Each point has a ray. `own` holds the absolute value of
-/// the ray's coordinate along this axis, `p` and `q` those along the two other axes ([`OTHERS`]). `weight` holds the
-/// weights of the points.
+/// the ray's coordinate along this axis, `p` and `q` the coordinates along the two other axes ([`OTHERS`]). `weight`
+/// holds the weights of the points.
 #[derive(Default)]
 struct Points {
     own: Vec<f64>,

@@ -23,10 +23,10 @@ use glam::{DMat3, DVec2, DVec3};
 /// `PRIOR_COST`: factor on the squared logarithm of the ratio of a side to `PRIOR_SIDE`. [bench features:layouts]
 const PRIOR_SIDE: f64 = 0.4;
 const PRIOR_COST: f64 = 0.01;
-/// For each side, the values `MIN_SIDE × RATIO^k` with `k < GRID` are tried besides those that the segments suggest.
-/// They run from 0.06 to 3.8. Seen from the camera, such a wall meets the back wall at 3° to 75° from the perpendicular
-/// to the back wall; photos of rooms show no wider range. `RATIO` may have any value up to 1.1: the refinements then
-/// reach every value between two neighbours. [convention]
+/// For each side, the values `MIN_SIDE × RATIO^k` with `k < GRID` are tried besides the values that the segments
+/// suggest. They run from 0.06 to 3.8. Seen from the camera, such a wall meets the back wall at 3° to 75° from the
+/// perpendicular to the back wall; photos of rooms show no wider range. `RATIO` may have any value up to 1.1: the
+/// refinements then reach every value between two neighbours. [convention]
 const MIN_SIDE: f64 = 0.06;
 const RATIO: f64 = 1.068;
 const GRID: usize = 64;

@@ -22,8 +22,8 @@
 //! the library, and an emergency reserve of memory. The library uses the reserve for small allocations when the system
 //! has no memory left; all running jobs of the process then end with LUXFER_OUT_OF_MEMORY.
 //!
-//! Fork: a child process has none of the threads of its parent. There, each call on an object that was created before
-//! the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
+//! Fork: a child process does not have the threads of its parent. In the child, each call on an object that was created
+//! before the fork returns LUXFER_INVALID_OPERATION at once, luxfer_context_get_last_error gives the reason, and
 //! luxfer_release returns LUXFER_OK and frees nothing. A child may create contexts of its own.
 //!
 //! Stack: a thread of the host needs 128 KiB of stack for calls that load files or do other work before they return.
@@ -56,8 +56,8 @@ pub struct luxfer_context_params {
     pub struct_size: u32,
     /// Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All jobs
     /// share these threads. Synchronous calls, which do their work before they return, do not use them, and so never
-    /// wait for a job. A synchronous call runs on the calling thread, or on a set of num_threads other threads that it
-    /// has to itself. The context keeps up to four idle sets for later calls.
+    /// wait for a job. A synchronous call runs on the calling thread, or on a set of num_threads other threads, which
+    /// it shares with no other call. The context keeps up to four idle sets for later calls.
     pub num_threads: u32,
     /// Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0, the
     /// default: no limit. A call that would exceed the limit returns LUXFER_OUT_OF_MEMORY. While a picture file is

@@ -25,8 +25,8 @@ pub const LUXFER_DEMO_TARGET_ROOM: luxfer_demo = 0;
 pub const LUXFER_DEMO_EXEMPLAR_ROOM: luxfer_demo = 1;
 /// A glossy red ball on a white table: the exemplar scene of a stylisation, of which an artist would paint a picture.
 pub const LUXFER_DEMO_SPHERE_ON_TABLE: luxfer_demo = 2;
-/// A vase, a ring and two balls, on the same table and under the same lamp as in LUXFER_DEMO_SPHERE_ON_TABLE: a target
-/// scene for a stylisation.
+/// A vase, a ring and two balls, on the table and under the lamp of LUXFER_DEMO_SPHERE_ON_TABLE: a target scene for a
+/// stylisation.
 pub const LUXFER_DEMO_STILL_LIFE: luxfer_demo = 3;
 
 /// The style of a generated artwork: a LUXFER_ARTWORK_ value.

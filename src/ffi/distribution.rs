@@ -24,7 +24,8 @@ pub struct luxfer_distribution {
 
 /// A file format of distributions: a LUXFER_DISTRIBUTION_ value.
 pub type luxfer_distribution_format = i32;
-/// IES LM-63 (.ies), with photometry of type C, or of type B when read.
+/// IES LM-63 (.ies) with photometry of type C. Files with photometry of type B are converted to type C when they are
+/// loaded.
 pub const LUXFER_DISTRIBUTION_IES: luxfer_distribution_format = 0;
 /// EULUMDAT (.ldt).
 pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
@@ -32,7 +33,7 @@ pub const LUXFER_DISTRIBUTION_LDT: luxfer_distribution_format = 1;
 pub const LUXFER_DISTRIBUTION_TM33: luxfer_distribution_format = 2;
 /// GLDF container (.gldf): a product with variants, of which one is read.
 pub const LUXFER_DISTRIBUTION_GLDF: luxfer_distribution_format = 3;
-/// Any of these formats: the content of the file decides which.
+/// Any of these formats; the library recognises the format by the content of the file.
 pub const LUXFER_DISTRIBUTION_ANY: luxfer_distribution_format = 4;
 
 /// Summary of a luminous intensity distribution.
@@ -64,8 +65,8 @@ pub struct luxfer_distribution_report {
     pub rendering: f64,
     /// Number of variants of the product in a GLDF container; 1 for all other formats.
     pub variants: u32,
-    /// Number of emitters whose distributions were added up: those of the file (TM-33) or of the variant that was read
-    /// (GLDF); 1 for IES and EULUMDAT.
+    /// Number of emitters whose distributions were added up. For TM-33, it counts the emitters of the file; for GLDF,
+    /// the emitters of the variant that was read. 1 for IES and EULUMDAT.
     pub emitters: u32,
 }
 
@@ -132,8 +133,8 @@ impl Distribution {
 
 /// Loads a distribution from an .ies, .ldt, .xml (TM-33) or .gldf file; path is UTF-8. TM-33 and GLDF are recognised by
 /// their content, whichever of these extensions the path has. After .gldf, the path may go on with # and the name, the
-/// id or the index from 0 of a variant, such as "lamp.gldf#black"; without it, the first variant is read. The caller
-/// releases *distribution. Any thread.
+/// id or the index from 0 of a variant, such as "lamp.gldf#black"; without such an addition, the first variant is read.
+/// The caller releases *distribution. Any thread.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed (the message names the line);
 /// LUXFER_UNSUPPORTED for photometry of type A, for photometry of type B in TM-33 files, for a GLDF container that
 /// gives only the web address of its photometry, and for files without luminous intensities, for example with radiant
@@ -232,8 +233,8 @@ pub unsafe extern "C" fn luxfer_distribution_get_name(
 
 /// Gets the luminous intensity in candela in one direction. Both angles are in degrees and finite: c is the angle of
 /// the C plane, which turns around the axis of the luminaire; gamma is the angle from straight down (0) to straight up
-/// (180). The intensity is interpolated linearly between the angles of the file, and is 0 for gamma outside them. Any
-/// thread.
+/// (180). The intensity is interpolated linearly between the angles of the file, and is 0 if gamma lies outside the
+/// angles of the file. Any thread.
 /// LUXFER_INVALID_ARGUMENT if an angle is not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_distribution_get_intensity(

@@ -40,7 +40,7 @@ pub const LUXFER_EMISSION_MASK: luxfer_emission_image = 1;
 /// length L and clamped to [-1, 1]; both are 1 if no pixel is lit. L is the side of a patch, but at most half the
 /// longer period if the lights repeat.
 pub const LUXFER_EMISSION_EXEMPLAR_GUIDES: luxfer_emission_image = 2;
-/// The guide channels of the texture, at the same reduced resolution: pixels of LUXFER_EMISSION_EXEMPLAR_GUIDES,
+/// The guide channels of the texture, at the resolution of LUXFER_EMISSION_EXEMPLAR_GUIDES: pixels of that image,
 /// copied with the patches that give the texture its colours.
 pub const LUXFER_EMISSION_GUIDES: luxfer_emission_image = 3;
 
@@ -75,9 +75,10 @@ pub struct luxfer_emission_params {
     /// 1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps.
     pub whole_lamps: u32,
     /// Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6, 1e6];
-    /// default 0. With LUXFER_LAW_FREE, the offset shifts all lamps if the texture is tileable and no light is copied
-    /// patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or the job ends
-    /// with LUXFER_INVALID_ARGUMENT; with whole_lamps = 0 it has no effect.
+    /// default 0. LUXFER_LAW_FREE has no lattice that an offset could shift: with this law, an offset other than 0 ends
+    /// the job with LUXFER_INVALID_ARGUMENT. There are two exceptions. If the texture is tileable and no light is
+    /// copied patch by patch (luxfer_emission_get_luminaire says which lights are), the offset shifts all lamps. With
+    /// whole_lamps = 0, the offset has no effect.
     pub offset: [f64; 2],
     /// A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The clipped
     /// core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with the clipped
@@ -108,10 +109,10 @@ pub struct luxfer_emission_params {
     /// This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
     pub clean_lamps: u32,
     /// Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
-    /// magnifies distant parts of the plane more than near ones. The magnification of a pixel is a length in the
-    /// unwarped photo divided by the same length in the photo; the relative magnification is this ratio divided by that
-    /// of the least magnified pixel of the exemplar. Pixels beyond the limit are left out, as if the photo did not show
-    /// them.
+    /// magnifies distant parts of the plane more than near parts. The magnification of a pixel is its length in the
+    /// unwarped photo divided by its length in the photo; the relative magnification is the magnification of the pixel
+    /// divided by the magnification of the least magnified pixel of the exemplar. Pixels beyond the limit are left out,
+    /// as if the photo did not show them.
     pub max_magnification: f64,
 }
 
@@ -171,7 +172,8 @@ impl luxfer_emission_params {
 
 /// Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its quality. A
 /// composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its sampling_error is 0.
-/// If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first one.
+/// If there are several exemplars, the fields regularity, law, runner_up, law_score and margin describe the first
+/// exemplar.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_emission_report {
@@ -193,10 +195,10 @@ pub struct luxfer_emission_report {
     /// this.
     pub exemplar_lamps: u32,
     /// Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
-    /// ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with those
-    /// of parts of the texture that are as large as the exemplar. If error is at most twice this value, it does not
-    /// indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a composition,
-    /// and if the texture is too small to hold parts as large as the exemplar at clearly different places.
+    /// ceiling. It is the root mean square difference between the three statistics of the whole texture and the
+    /// statistics of parts of the texture that are as large as the exemplar. If error is at most twice this value, it
+    /// does not indicate a bad texture. 0 for LUXFER_LAW_WHOLE and LUXFER_LAW_COPY, for several exemplars, for a
+    /// composition, and if the texture is too small to hold parts as large as the exemplar at clearly different places.
     pub sampling_error: f32,
     /// The law (rule) by which the texture continues the lights: a LUXFER_LAW_ value.
     pub law: luxfer_emission_law,
@@ -209,9 +211,8 @@ pub struct luxfer_emission_report {
     /// whole lamps.
     pub law_score: f64,
     /// law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is NaN.
-    /// LUXFER_LAW_BEST prefers two kinds of laws: the one that LUXFER_LAW_CORRELATION would choose, and lattices along
-    /// the axes of the room. If it has kept a preferred law although runner_up scores slightly better, the value is
-    /// negative.
+    /// LUXFER_LAW_BEST prefers the law that LUXFER_LAW_CORRELATION would choose, and lattices along the axes of the
+    /// room. If it has kept a preferred law although runner_up scores slightly better, the value is negative.
     pub margin: f64,
 }
 
@@ -250,8 +251,8 @@ pub struct luxfer_luminaire {
     pub flux_share: f64,
     /// Mean linear RGB colour, where 1 is the photo's white.
     pub colour: [f32; 3],
-    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %, are of
-    /// one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
+    /// Number of the lamp's kind, from 1. Lamps of about equal size and shape, whose areas and sides differ by at most
+    /// 25 %, are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp.
     pub kind: u32,
 }
 
@@ -440,7 +441,7 @@ pub unsafe extern "C" fn luxfer_emission_set_photo(
     })
 }
 
-/// Starts a job that makes the whole texture in memory. For textures that are too large for that, use
+/// Starts a job that makes the whole texture in memory. For textures that are too large for the memory, use
 /// luxfer_emission_start_composition. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the exemplar is missing or a job is already running. The job may end with
 /// LUXFER_DEGENERATE if the exemplar has no lights, or if the setting law asks for a lattice or a row that the lights

@@ -10,11 +10,12 @@ pub type luxfer_emission_law = i32;
 /// In settings only: the law that predicts the lamps of the photo best. The law of LUXFER_LAW_CORRELATION is kept
 /// unless another law predicts the lamps clearly better. If luxfer_emission_report.error of the texture then exceeds 1,
 /// and there is a single exemplar, the other laws are tried, and the texture with the smallest error is kept. The
-/// emission has the warning LUXFER_WARNING_NO_PATTERN even then.
+/// emission has the warning LUXFER_WARNING_NO_PATTERN even if another law gives a better texture.
 pub const LUXFER_LAW_BEST: luxfer_emission_law = 0;
-/// In settings only: the law follows from the periods in the autocorrelation of the lights: LUXFER_LAW_LATTICE for two
-/// periods, LUXFER_LAW_ROW for one, and for none LUXFER_LAW_FREE or, if the exemplar shows few lamps, LUXFER_LAW_WHOLE.
-/// A period counts only if the correlation after a shift by this period is at least the setting min_regularity.
+/// In settings only: the law follows from the periods in the autocorrelation of the lights. Two periods give
+/// LUXFER_LAW_LATTICE, one period gives LUXFER_LAW_ROW. Without a period, the law is LUXFER_LAW_WHOLE if the exemplar
+/// shows few lamps or one isolated group of lamps, and otherwise LUXFER_LAW_FREE. A period counts only if the
+/// correlation after a shift by this period is at least the setting min_regularity.
 pub const LUXFER_LAW_CORRELATION: luxfer_emission_law = 1;
 /// The lamps form a lattice with two periods.
 pub const LUXFER_LAW_LATTICE: luxfer_emission_law = 2;

@@ -19,11 +19,11 @@ use crate::emission::{Composition, LampList, Tile};
 use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 
-/// Adds a further exemplar, whose lights are mixed with those of the first one: the image weights states, for each
-/// place of the texture, the share of the lamps that come from the new exemplar. The images unwarped, light and valid
-/// are as for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo are as for
-/// luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per texel, in [1e-3, 1e3]. Any
-/// thread.
+/// Adds an exemplar. The texture then mixes the lights of all exemplars: for each place of the texture, the image
+/// weights states the share of the lamps that come from the added exemplar. The arguments unwarped, light and valid
+/// have the meanings that they have for luxfer_emission_set_exemplar; photo, which may be NULL, and to_photo have the
+/// meanings that they have for luxfer_emission_set_photo. scale is the number of unwarped pixels of this exemplar per
+/// texel, in [1e-3, 1e3]. Any thread.
 ///
 /// The image weights has 1 channel with values in [0, 1] and is stretched over the texture. If several exemplars are
 /// added, their weights are images of one size, and the sum of the weights of a pixel is at most 1; the first exemplar
@@ -92,12 +92,12 @@ pub unsafe extern "C" fn luxfer_emission_start_composition(
     })
 }
 
-/// Renders a rectangle (a tile) of a composed texture: width x height texels, of which the top-left one is texel (x, y)
-/// of the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. Whatever the sizes and
-/// the order of the tiles, they equal, to the bit, the texture and the mask that luxfer_emission_start makes with the
-/// same settings, unless LUXFER_LAW_BEST makes luxfer_emission_start try other laws, which a composition never does.
-/// The call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads may render tiles
-/// at the same time.
+/// Renders a rectangle (a tile) of a composed texture: width x height texels, whose top-left texel is texel (x, y) of
+/// the texture. The tile has 4 channels: linear RGB, and a mask that is 1 on lamps, else 0. Tiles of any sizes,
+/// rendered in any order, equal to the bit the texture and the mask that luxfer_emission_start makes with these
+/// settings, unless LUXFER_LAW_BEST makes luxfer_emission_start try other laws, which a composition never does. The
+/// call takes up to a second per megapixel. The caller releases *tile. Any thread; several threads may render tiles at
+/// the same time.
 /// LUXFER_NOT_READY before a job of luxfer_emission_start_composition has succeeded; LUXFER_INVALID_ARGUMENT if the
 /// rectangle is empty or exceeds the texture; LUXFER_OUT_OF_MEMORY beyond the memory budget.
 #[unsafe(no_mangle)]

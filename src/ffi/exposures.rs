@@ -26,8 +26,9 @@ use std::sync::Arc;
 
 /// Where the exposures of photos come from: a LUXFER_EXPOSURE_SOURCE_ value.
 pub type luxfer_exposure_source = i32;
-/// From the metadata and the pixels, weighted by their errors; from one of them where the other is missing. If they
-/// contradict each other by more than a third of a stop, luxfer_image_merge_exposures returns LUXFER_INVALID_ARGUMENT.
+/// From the metadata and the pixels, weighted by their errors; where one of the two sources is missing, from the other
+/// source alone. If the two contradict each other by more than a third of a stop, luxfer_image_merge_exposures returns
+/// LUXFER_INVALID_ARGUMENT.
 pub const LUXFER_EXPOSURE_SOURCE_BOTH: luxfer_exposure_source = 0;
 /// From the exposure time, ISO speed and f-number in the files.
 pub const LUXFER_EXPOSURE_SOURCE_METADATA: luxfer_exposure_source = 1;
@@ -45,15 +46,15 @@ pub struct luxfer_merge_params {
     pub source: luxfer_exposure_source,
     /// Index of the reference; -1, the default: the photo with the most pixels that are well exposed.
     pub reference: i32,
-    /// What happens where exposures disagree beyond noise, because something moved. 0, the default: only those
-    /// exposures are averaged that agree with the reference or, where the reference is clipped, with the next shorter
-    /// exposure that is not clipped. 1: all exposures are averaged.
+    /// Treatment of pixels at which the exposures differ by more than noise explains, because something moved. 0, the
+    /// default: a pixel is averaged only over the exposures that agree with the reference or, where the reference is
+    /// clipped, with the next shorter exposure that is not clipped. 1: all exposures are averaged.
     pub keep_moving: u32,
     /// Largest shift between photos that are neighbours in exposure, as a part of the longer side of a photo, in [0,
     /// 0.25]; default 0.03. 0: the photos are not aligned, as for a camera on a tripod.
     pub max_shift: f64,
-    /// Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2 has a
-    /// high dynamic range and is nowhere clipped.
+    /// Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2 counts
+    /// as a photo of high dynamic range, in which no pixel is clipped.
     pub saturation: f64,
     /// Exposure of each photo in any unit, such as seconds, in [1e-9, 1e9]; all 0, the default: see the field source.
     /// Elements beyond the number of photos must be 0.
@@ -122,7 +123,8 @@ pub struct luxfer_merge_report {
     /// Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values come from the
     /// shortest exposure and are lower bounds.
     pub clipped: f64,
-    /// Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is 1.
+    /// Part of the pixels at which neighbouring exposures differ by more than noise explains, in [0, 1]; 0 if
+    /// keep_moving is 1.
     pub moved: f64,
     /// Exposure of each photo divided by the exposure of the reference: a ratio of amounts of light, not of stops;
     /// above 1 for a photo with more light, 1 for the reference.
@@ -169,10 +171,10 @@ impl luxfer_merge_report {
 }
 
 /// Merges count photos of one view, in [1, 16], in any order, into one image. The photos have one size and one number
-/// of channels (1, 3 or 4; the result has the alpha of the reference). They may be shifted by whole pixels, as photos
-/// from the hand are. Where the view is rotated or something moves, fewer exposures are used. params may be NULL for
-/// the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is synchronous. The
-/// caller releases *image. Any thread.
+/// of channels (1, 3 or 4; the result has the alpha of the reference). They may be shifted by whole pixels, as handheld
+/// photos are. Where a photo is rotated against the reference, or something moves, fewer exposures are used. params may
+/// be NULL for the defaults. size is sizeof *report; report may be NULL, then size does not matter. The call is
+/// synchronous. The caller releases *image. Any thread.
 ///
 /// The estimate of a pixel is the sum of its values divided by the sum of their exposures, which has the least noise
 /// that photons allow. The weight of a value falls from 1 at 80 % of the clipping value to 0 at the clipping value. A

@@ -288,9 +288,9 @@ pub unsafe extern "C" fn luxfer_features_set_view(
 
 /// Sets strokes that guide the fit of a box-shaped room to the lines that luxfer_features_set_view has set. The fit
 /// prefers rooms in which one surface, such as the ceiling, contains all positive strokes (of both phases,
-/// LUXFER_PHASE_PLANE and LUXFER_PHASE_LIGHTS) and none of the negative strokes of LUXFER_PHASE_PLANE. The strokes have
-/// no effect if the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL
-/// removes them. Any thread.
+/// LUXFER_PHASE_PLANE and LUXFER_PHASE_LIGHTS) and no negative stroke of LUXFER_PHASE_PLANE. The strokes have no effect
+/// if the depth comes from another source. The call copies the strokes, which replace earlier strokes; NULL removes
+/// them. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the strokes are for images of another size than the photo.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_features_set_strokes(

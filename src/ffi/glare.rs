@@ -5,9 +5,9 @@
 //! its luminous opening as seen from the eye. Luminaires whose file states no luminous opening, and luminaires whose
 //! opening the eye sees edge-on, have no such area and are not rated.
 //!
-//! Each connected part of a mesh that emits is a source, as are the single lamps of an emission texture. Its luminance
-//! is the mean over its visible part. Points darker than a tenth of the largest luminance of their material, such as
-//! the glow around lamps in a texture, are not rated.
+//! Each connected part of a mesh that emits is a source, as are the single lamps of an emission texture. The luminance
+//! of such a source is the mean over its visible part. Points darker than a tenth of the largest luminance of their
+//! material, such as the glow around lamps in a texture, are not rated.
 
 use super::guard::enter;
 use super::handle::Owned;
@@ -38,7 +38,7 @@ pub struct luxfer_observer {
 pub struct luxfer_observer_glare {
     /// Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the sources in view, with their
     /// luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible; 19 is
-    /// the limit for offices. -infinity if no source is in view; infinity if one is in view and the background is
+    /// the limit for offices. -infinity if no source is in view; infinity if a source is in view and the background is
     /// black.
     pub ugr: f64,
     /// Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi.

@@ -73,20 +73,21 @@ versioned!(luxfer_gonio_report, [40], {
     Self { struct_size: 40, position: [0.0; 3], flux: 0.0, flux_error: 0.0, intensity_error: 0.0 }
 });
 
-/// Measures the distribution of count meshes of a scene, whose indices are in the array meshes; of all meshes if count
-/// is 0, where meshes may be NULL. The intensities account for the light that the meshes block, reflect and transmit.
-/// Other meshes, lights, luminaires and the environment count as absent. params may be NULL for the defaults.
+/// Measures the distribution of count meshes of a scene, whose indices are in the array meshes. If count is 0, the call
+/// measures all meshes of the scene, and meshes may be NULL. The intensities account for the light that the meshes
+/// block, reflect and transmit. Other meshes, lights, luminaires and the environment count as absent. params may be
+/// NULL for the defaults.
 ///
-/// The result is of absolute photometry, states no power and no colour, and has the name of the first mesh with a name.
-/// Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the parts that
-/// emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
+/// The new distribution has absolute photometry, states no power and no colour, and has the name of the first mesh that
+/// has a name. Its luminous opening is the box, the cylinder along the axis or the ellipsoid that agrees best with the
+/// parts that emit. If the light leaves through a translucent shade or from a reflector, this opening is too small: the
 /// intensities, which hold far from the luminaire, are right, but its glare, its pictures and the light close to it are
 /// wrong.
 ///
 /// Intensities between the angles are interpolated linearly; the stated errors contain the noise of the paths only. The
 /// caller releases *distribution. report may be NULL; size is sizeof *report. The call is synchronous; its time is
-/// proportional to planes times angles times samples, seconds with the defaults. luxfer_job_start runs it as a job. Any
-/// thread.
+/// proportional to planes times angles times samples, and is a few seconds with the defaults. luxfer_job_start runs it
+/// as a job. Any thread.
 /// LUXFER_DEGENERATE if no mesh emits light, or if no light leaves the meshes, as from a closed room;
 /// LUXFER_INVALID_ARGUMENT if a mesh does not exist, a setting is out of range, or the scene is not valid.
 #[unsafe(no_mangle)]

@@ -210,11 +210,12 @@ pub unsafe extern "C" fn luxfer_guides_get_image(
 /// the offset x (right) and y (down), in pixels, to the position of the pixel's surface point in the previous frame. It
 /// is NaN where the previous frame does not show the point. The caller releases *motion. Any thread.
 ///
-/// The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. Meshes with
-/// the same name, number of vertices and triangle indices count as one object. If several meshes share all three, and
-/// both frames have the same number of them, they correspond in their order. If an object has no counterpart in the
-/// previous frame, its motion is NaN, and luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has
-/// the motion of the mirror or pane itself, not of the objects that are seen in it.
+/// The frames may be rendered from different scenes. Camera, objects and single vertices may have moved. A mesh of the
+/// current frame and a mesh of the previous frame are one object if they have equal names, numbers of vertices and
+/// triangle indices. If several meshes of a frame are equal in all three, they correspond in their order, provided that
+/// the other frame has as many of them. If an object has no counterpart in the previous frame, its motion is NaN, and
+/// luxfer_get_warnings of guides has a warning. A pixel of a mirror or pane has the motion of the mirror or pane
+/// itself, not of the objects that are seen in it.
 /// LUXFER_NOT_READY before the guides of both frames are rendered; LUXFER_INVALID_ARGUMENT if their sizes differ.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_guides_get_motion(

@@ -43,7 +43,7 @@ pub const LUXFER_COLOUR_LINEAR: luxfer_colour_space = 0;
 /// Colour with the sRGB curve; alpha, the second of two or the fourth of four channels, is linear.
 pub const LUXFER_COLOUR_SRGB: luxfer_colour_space = 1;
 
-/// Flag of a view: the first row in memory is the bottom one.
+/// Flag of a view: the first row in memory is the bottom row of the image.
 pub const LUXFER_VIEW_BOTTOM_UP: u32 = 1;
 
 /// An image in the caller's memory. Fill it with luxfer_image_view_init, then set width, height, sample, byte_size and
@@ -74,8 +74,8 @@ pub struct luxfer_image_view {
     /// Size of the memory at data in bytes; default 0: the caller must set it. LUXFER_INVALID_ARGUMENT if the pixels
     /// and the strides need more.
     pub byte_size: usize,
-    /// The pixels, at any alignment; default NULL: the caller must set it. Bytes between pixels and rows are never
-    /// touched.
+    /// The pixels, at any alignment; default NULL: the caller must set it. The library neither reads nor writes the
+    /// bytes between pixels or rows.
     pub data: *mut c_void,
 }
 
@@ -389,7 +389,7 @@ fn decode(context: &Arc<Context>, bytes: &[u8], encoding: io::Encoding) -> Resul
 /// All functions of this library write files as follows. An existing file is replaced only once the new one is
 /// complete, and keeps its mode and owner. Symbolic links are followed. Devices, FIFOs, files with several hard links,
 /// and files in folders that accept no new files are written in place.
-/// LUXFER_INVALID_ARGUMENT if the extension is another one, the number of channels is not allowed, or exposure is out
+/// LUXFER_INVALID_ARGUMENT if the file has another extension, the number of channels is not allowed, or exposure is out
 /// of range for a .png; LUXFER_IO if the file cannot be written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_save(

@@ -230,7 +230,7 @@ pub unsafe extern "C" fn luxfer_importance_respond(
 
 /// Solves for the factor, per channel, by which to multiply a texture so that the mean radiance of the target becomes
 /// rgb in cd/m², each channel in [0, 1e15]. *report receives the solution, with an outcome for each channel. This call
-/// uses the map; luxfer_relight solves the same problem by tracing new paths. texture and placement are as for
+/// uses the map; luxfer_relight solves this problem by tracing new paths. texture and placement are as for
 /// luxfer_importance_respond. size is sizeof *report. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_UNREACHABLE if no channel has a solution: no light of the
 /// channel reaches the target from the texture, or the other lights alone exceed rgb; LUXFER_INVALID_ARGUMENT if

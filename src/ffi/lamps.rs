@@ -48,7 +48,7 @@ pub const LUXFER_GROUP_BY_Y: luxfer_group = 3;
 pub const LUXFER_GROUP_BY_Z: luxfer_group = 4;
 /// Lamps of about equal area form a group: in the order of their areas, a new group begins where the area grows by more
 /// than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot, directional) forms one group,
-/// and luminaires with the same distribution form one group for each distribution.
+/// and all luminaires with one distribution form one group.
 pub const LUXFER_GROUP_BY_TYPE: luxfer_group = 5;
 
 /// Settings of the solver for lamps. Fill them with luxfer_lamps_params_init.

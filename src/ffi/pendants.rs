@@ -51,7 +51,7 @@ pub type luxfer_known = i32;
 pub const LUXFER_KNOWN_NOTHING: luxfer_known = 0;
 /// The distance of the first lamp's top below the ceiling; with alike = 0, of every lamp's top.
 pub const LUXFER_KNOWN_DROP: luxfer_known = 1;
-/// The largest diameter of the body, which is then the same for all lamps, also with alike = 0.
+/// The largest diameter of the body. All lamps then have this diameter, also with alike = 0.
 pub const LUXFER_KNOWN_DIAMETER: luxfer_known = 2;
 /// The horizontal distance between the axes of the first two lamps; with alike = 0 it determines no size.
 pub const LUXFER_KNOWN_SPACING: luxfer_known = 3;
@@ -80,8 +80,7 @@ pub struct luxfer_pendants_params {
     pub struct_size: u32,
     /// 1, the default: all lamps of the mask have bodies of one shape and size; 0: each lamp has a body of its own.
     pub alike: u32,
-    /// 1: all lamps hang at the same height, which requires alike = 1; 0, the default: each lamp hangs at its own
-    /// height.
+    /// 1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own height.
     pub level: u32,
     /// 1, the default: each point of the mask's outline is moved to where the photo's luminance is the mean of the
     /// luminances inside and outside the lamp. Points where the photo is clipped or has little contrast stay on the
@@ -373,13 +372,13 @@ fn doubts(found: &Pendants, lamp: &Lamp) -> u32 {
 ///
 /// suspensions holds x and y in pixels of each of suspension_count points where a suspension meets the ceiling; NULL if
 /// no suspension is marked. A point belongs to the lamp whose axis passes nearest to it in the photo; a lamp has at
-/// most one point. pendants is an array of capacity structs; size is sizeof one of them. *count receives the number of
-/// lamps, even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds for
-/// a lamp, and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
+/// most one point. pendants is an array of capacity structs; size is sizeof(luxfer_pendant). *count receives the number
+/// of lamps, even if it exceeds capacity; only the first capacity lamps are written. The call takes about 0.2 seconds
+/// for a lamp, and more for many lamps that are alike; luxfer_job_start runs it as a job. Any thread.
 /// LUXFER_DEGENERATE if the mask is empty, a lamp is too small, the photo's border cuts off more than 30 % of its
-/// outline, or its outline is not that of a body of revolution: the message says what to paint. LUXFER_NOT_READY before
-/// the job of view has succeeded; LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a setting
-/// is out of range.
+/// outline, or its outline is not the outline of a body of revolution: the message says what to paint. LUXFER_NOT_READY
+/// before the job of view has succeeded; LUXFER_INVALID_ARGUMENT if sizes differ, there are more than 16 lamps, or a
+/// setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_pendants_find(
     context: *mut luxfer_context,

@@ -13,7 +13,7 @@ use super::status::luxfer_status;
 use crate::image::photo::PhotoMetadata;
 
 /// How the colours of an image were interpreted: a LUXFER_FILE_COLOUR_ value. Values are never changed or reused; new
-/// ones may be added.
+/// values may be added.
 pub type luxfer_file_colour = i32;
 /// The image was not loaded from a file.
 pub const LUXFER_FILE_COLOUR_NONE: luxfer_file_colour = 0;

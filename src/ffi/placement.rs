@@ -38,13 +38,13 @@ pub struct luxfer_placement_params {
     /// 0.
     pub radiance: [f32; 3],
     /// Number of placements that are tried first, in [1, 4096]; default 64. The search then descends from the best of
-    /// them.
+    /// these placements.
     pub starts: u32,
     /// Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5.
     pub min_offset: [f64; 2],
     /// Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the default,
-    /// allows every offset. If min_offset and max_offset are equal, the offset is fixed; equal bounds fix scale and
-    /// rotation likewise.
+    /// allows every offset. If min_offset and max_offset are equal, the offset is fixed; in the same way, equal bounds
+    /// fix the scale and the rotation.
     pub max_offset: [f64; 2],
     /// Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1.
     pub min_scale: [f64; 2],

@@ -175,7 +175,7 @@ pub unsafe extern "C" fn luxfer_plan_create(
 /// releases *job. Any thread.
 /// LUXFER_INVALID_ARGUMENT if params is NULL or does not set exactly one goal, or if a setting is out of range;
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
-/// and the scene has none.
+/// and the scene has no camera.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_plan_start_render(
     plan: *mut luxfer_plan,

@@ -104,8 +104,8 @@ pub struct luxfer_rectify_params {
     /// Must be 0.
     pub reserved: u32,
     /// Limit of the magnification by unwarping, a ratio of lengths in (0, 1e6]; default 16. The farther a part of the
-    /// plane is from the camera, the more its photo pixels are magnified. Parts whose magnification exceeds that of the
-    /// nearest part by more than this factor are cut off.
+    /// plane is from the camera, the more its photo pixels are magnified. Parts that are magnified more than this
+    /// factor times as much as the nearest part are cut off.
     pub max_magnification: f64,
     /// Seed of the search; default 1.
     pub seed: u64,
@@ -192,8 +192,8 @@ pub struct luxfer_rectify_report {
     pub vanishing_points: [[f64; 3]; 3],
     /// Standard deviation of the direction to each vanishing point in camera space, in radians.
     pub vanishing_errors: [f64; 3],
-    /// Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from the
-    /// others, or from the assumption that the camera is upright.
+    /// Number of segments that run to each vanishing point; 0: no segment runs to the point, which is then derived from
+    /// the other vanishing points, or from the assumption that the camera is upright.
     pub vanishing_support: [u32; 3],
     /// Source of the focal length: a LUXFER_FOCAL_ value.
     pub focal_source: luxfer_focal_source,
@@ -233,8 +233,8 @@ pub struct luxfer_rectify_report {
     pub squareness: [f64; 3],
     /// Standard deviations of the field squareness; NaN where squareness is NaN.
     pub squareness_errors: [f64; 3],
-    /// The distortion that was undone, in the unit of the field distortion: the one that
-    /// luxfer_rectify_params.distortion sets, else the measured one; 0 if none was undone.
+    /// The distortion that was undone, in the unit of the field distortion; 0 if no distortion was undone. It equals
+    /// luxfer_rectify_params.distortion or, if that is NaN, the measured distortion.
     pub undone: f64,
 }
 
@@ -437,7 +437,7 @@ pub unsafe extern "C" fn luxfer_rectify_get_image(
 
 /// Undoes the distortion of the lens in an image of the photo's size, such as the photo or a mask: makes the image that
 /// an ideal lens would have taken, with the same size and principal point. Pixels beyond the image are 0. If no
-/// distortion was undone, the new image equals the old one. The caller releases *undistorted. Any thread.
+/// distortion was undone, the new image equals the given image. The caller releases *undistorted. Any thread.
 /// LUXFER_NOT_READY before a job has succeeded; LUXFER_INVALID_ARGUMENT if the image has not the photo's size.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_rectify_undistort(

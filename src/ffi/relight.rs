@@ -37,9 +37,9 @@ pub type luxfer_fit = i32;
 /// The mean of the light over the target surface should equal the target value.
 pub const LUXFER_FIT_MEAN: luxfer_fit = 0;
 /// The sum, over all points of the target surface, of the squared difference between light and target value should be
-/// smallest. A gradient descent on the texels of the emission minimises the same sum. Bright points count more, so the
-/// emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor 1/(1+CV²), where CV is
-/// the coefficient of variation (standard deviation divided by mean) of the light over the target surface.
+/// smallest. A gradient descent on the texels of the emission would minimise this sum too. Bright points count more, so
+/// the emission is dimmer than with LUXFER_FIT_MEAN. Without other light it is dimmer by the factor 1/(1+CV²), where CV
+/// is the coefficient of variation (standard deviation divided by mean) of the light over the target surface.
 pub const LUXFER_FIT_LEAST_SQUARES: luxfer_fit = 1;
 
 /// Whether light should equal its target value, or stay above or below it: a LUXFER_CONSTRAINT_ value.
@@ -271,7 +271,8 @@ pub unsafe extern "C" fn luxfer_relight_set_scene(
 }
 
 /// Sets rgb, the mean radiance that the target mesh should have, in cd/m² per channel, each in [0, 1e15]. For
-/// LUXFER_QUANTITY_INCIDENT this is the radiance of a white surface in the same light, illuminance / pi. Any thread.
+/// LUXFER_QUANTITY_INCIDENT, rgb is the radiance that a white surface would have in place of the target: illuminance /
+/// pi. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a channel is out of range.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
 #[unsafe(no_mangle)]

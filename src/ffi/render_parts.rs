@@ -3,8 +3,8 @@
 //! Renders an image on several machines. A part is a rectangle of the image and a range of its paths. Each machine
 //! renders parts into files, and one machine merges the files. The result equals the image that one machine renders as
 //! a single part, for any division into parts and any order, except for the rounding of sums in double precision. A
-//! lost part can be rendered again and is then equal to the bit. An image of luxfer_render_start has the same expected
-//! values, but other noise.
+//! lost part can be rendered again; the new part equals the lost part to the bit. An image of luxfer_render_start has
+//! equal expected values, but different noise.
 //!
 //! A part has a fixed number of paths: target_error, relative_error, pixel_error and time_budget_ms must be 0. All
 //! parts and the merge must use the same scene, camera, layers and luxfer_render_params; the merge checks this.
@@ -65,8 +65,8 @@ impl luxfer_render_part {
 
 /// Gets one part of a rendering. The image is split into columns x rows rectangles, and the paths of each pixel are
 /// split into a number of ranges; all parts have about equal size. index is less than columns * rows * ranges. It
-/// counts the rectangles row by row, and all rectangles of one range come before those of the next range. params may
-/// be NULL for the defaults. size is sizeof *part. Any thread.
+/// numbers first the parts with the first range of paths, rectangle by rectangle and row by row, then the parts with
+/// the second range, and so on. params may be NULL for the defaults. size is sizeof *part. Any thread.
 /// LUXFER_INVALID_ARGUMENT if there is no such part, or if some parts would be empty because there are more columns,
 /// rows or ranges than pixels or paths to split.
 #[unsafe(no_mangle)]
@@ -100,8 +100,9 @@ pub unsafe extern "C" fn luxfer_render_split(
 /// an existing file is replaced only once the new one is complete. Afterwards the images of the rendering show this
 /// part alone. params may be NULL for the defaults. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
-/// and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if the settings
-/// have an error target or a time budget, or if the part exceeds the image; LUXFER_IO if the file cannot be written.
+/// and the scene has no camera. The job may end with LUXFER_INVALID_ARGUMENT if a setting is out of range, if the
+/// settings have an error target or a time budget, or if the part exceeds the image; LUXFER_IO if the file cannot be
+/// written.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_render_start_part(
     render: *mut luxfer_render,
@@ -126,7 +127,7 @@ pub unsafe extern "C" fn luxfer_render_start_part(
 }
 
 /// Adds a file that luxfer_render_start_part has written to the list of files to merge. path is UTF-8. The call reads
-/// only the header of the file; the merge reads the rest. Any thread.
+/// only the header of the file; the merge reads the pixels. Any thread.
 /// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is not a part of a rendering; LUXFER_INVALID_OPERATION
 /// while a job runs.
 #[unsafe(no_mangle)]
@@ -156,7 +157,7 @@ pub unsafe extern "C" fn luxfer_render_clear_parts(render: *mut luxfer_render) -
 /// the functions that read the results of luxfer_render_start. params may be NULL for the defaults. The caller releases
 /// *job. Any thread.
 /// LUXFER_INVALID_OPERATION if the scene is missing or a job is already running; LUXFER_NOT_FOUND if no camera is set
-/// and the scene has none. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or
+/// and the scene has no camera. The job may end with LUXFER_INVALID_ARGUMENT if a file belongs to another rendering or
 /// another scene, if parts overlap, or if paths are missing: the message names the first gap; LUXFER_IO or
 /// LUXFER_FORMAT if a file cannot be read.
 #[unsafe(no_mangle)]

@@ -5,10 +5,10 @@
 //! as it was at the start of the job. Calls that change a scene wait for each other; a call that fails leaves the scene
 //! unchanged.
 //!
-//! Most limits are checked by the calls that set the values, but some depend on several calls. A scene is valid if no
-//! light is above 1e15: no emission times a texel of its emission texture, no luminance of the faces of a luminaire, no
-//! intensity. Calls and jobs that trace a scene which is not valid, export it or list its candidates for the ceiling
-//! end with LUXFER_INVALID_ARGUMENT; the message names the object.
+//! Most limits are checked by the calls that set the values, but some depend on several calls. In a valid scene, all
+//! light is at most 1e15: each emission times each texel of its emission texture, each texel of the environment, each
+//! intensity, and the luminance of the faces of each luminaire. Calls and jobs that trace a scene which is not valid,
+//! export it or list its candidates for the ceiling end with LUXFER_INVALID_ARGUMENT; the message names the object.
 
 use super::context::{Charge, Context, luxfer_context};
 use super::guard::{enter, lock};
@@ -47,7 +47,8 @@ pub type luxfer_write_fn = Option<unsafe extern "C" fn(user: *mut c_void, data: 
 pub struct luxfer_scene_counts {
     /// sizeof(luxfer_scene_counts), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below.
+    /// Number of meshes. Their indices are 0 to meshes - 1; the objects that the fields below count are numbered in
+    /// this way too.
     pub meshes: u32,
     /// Number of materials.
     pub materials: u32,
@@ -315,10 +316,11 @@ pub unsafe extern "C" fn luxfer_scene_get_counts(
 
 /// Sets the environment, which emits light from all directions, and replaces an earlier environment. If image is NULL,
 /// the radiance of the environment is rgb in cd/m², each channel in [0, 1e15], from every direction. Otherwise the
-/// radiance is an equirectangular image in linear values, multiplied by rgb; of its channels, the first three count, or
-/// the first one as grey if there are fewer than three. A product above 1e15 makes the scene not valid. The centre of
-/// the image is towards -z, its top towards +y, the centre of its right half towards +x. Light samples of the renderer
-/// are drawn in proportion to the brightness of the image. The image is copied. Any thread.
+/// radiance is an equirectangular image in linear values, multiplied by rgb. An image with 3 or more channels starts
+/// with red, green and blue; of an image with 1 or 2 channels, the first channel is taken as grey. A product above 1e15
+/// makes the scene not valid. The centre of the image is towards -z, its top towards +y, the centre of its right half
+/// towards +x. Light samples of the renderer are drawn in proportion to the brightness of the image. The image is
+/// copied. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of the image is negative or not finite; LUXFER_OUT_OF_MEMORY beyond the memory
 /// budget.
 /// cbindgen:ptrs-as-arrays=[[rgb; 3]]
@@ -355,9 +357,10 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
 }
 
 /// Finds a planar surface among the triangles of an object or material: of the planes in which these triangles lie, the
-/// plane from which most of the room is visible. name is the name of the object or material, in UTF-8. An equal name is
-/// sought first, then a name that differs only in upper and lower case, then the only name that contains name in any
-/// case. Each step looks at the objects first, then at the materials. size is sizeof *found. Any thread.
+/// plane from which most of the room is visible. name is the name of the object or material, in UTF-8. The call looks
+/// first for an equal name, then for a name that differs only in upper and lower case, then for a name that contains
+/// name in any case, if there is exactly one. Each step looks at the objects first, then at the materials. size is
+/// sizeof *found. Any thread.
 /// LUXFER_NOT_FOUND if no name fits, or if name is only a part of several names: the message lists names that exist;
 /// LUXFER_DEGENERATE if there is no planar surface.
 #[unsafe(no_mangle)]

@@ -19,7 +19,7 @@ use std::path::Path;
 /// From where a luminaire shines: a LUXFER_LUMINAIRE_ value.
 pub type luxfer_luminaire_shape = i32;
 /// A luminaire shines from the faces of its luminous opening, with the size that its file states: a rectangle, a disc,
-/// a box, a cylinder or an ellipsoid. In each direction, all points of the faces have the same luminance: the intensity
+/// a box, a cylinder or an ellipsoid. In each direction, all points of the faces have equal luminance: the intensity
 /// divided by the projected area of the faces. The light is therefore right at any distance, and renderings show the
 /// faces. A luminaire whose file states no size, or a size below 1 mm², shines from a point.
 pub const LUXFER_LUMINAIRE_FACES: luxfer_luminaire_shape = 0;

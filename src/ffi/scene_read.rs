@@ -40,7 +40,7 @@ pub struct luxfer_mesh_info {
     pub triangle_count: u64,
     /// 1 if each vertex has a normal, 0 if triangles are shaded flat.
     pub has_normals: u32,
-    /// Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second.
+    /// Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second set.
     pub uv_sets: u32,
     /// 1 if each vertex has a colour, else 0.
     pub has_colours: u32,

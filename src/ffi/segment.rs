@@ -42,8 +42,8 @@ pub type luxfer_subject = i32;
 pub const LUXFER_SUBJECT_AUTO: luxfer_subject = 0;
 /// A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the ten channels
 /// of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the wall, the floor or the
-/// ceiling that the positive strokes lie on. If the strokes lie on more than one of these, only those connected parts
-/// of the mask remain that positive strokes touch.
+/// ceiling that the positive strokes lie on. If the positive strokes lie on several of these surfaces, the mask keeps
+/// only its connected parts that positive strokes touch.
 pub const LUXFER_SUBJECT_SURFACE: luxfer_subject = 1;
 /// Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks one lamp
 /// or more. Regions without a stroke that resemble the marked lamps and lie in the mask of luxfer_segment_set_region
@@ -75,10 +75,10 @@ pub struct luxfer_segment_params {
     pub ridge: f64,
     /// Seed of the samples that are drawn; default 1.
     pub seed: u64,
-    /// Smallest contrast that the refinement by refine_radius follows. Where the standard deviation of the first three
-    /// channels within one of its windows is below this value, the refinement smooths the mask; where it is above, the
-    /// mask follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8. No
-    /// effect if refine_radius is 0.
+    /// Smallest contrast that the refinement by refine_radius follows. In windows in which the standard deviation of
+    /// the first three channels is below this value, the refinement smooths the mask; in other windows, the mask
+    /// follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6]; default 8. No effect
+    /// if refine_radius is 0.
     pub refine_tolerance: f64,
     /// Kind of object that the positive strokes mark: a LUXFER_SUBJECT_ value; default LUXFER_SUBJECT_AUTO. If the
     /// subject is lamps, the settings above have no effect.
@@ -144,7 +144,7 @@ pub struct luxfer_segment_report {
     pub negative_samples: u64,
     /// Number of samples of the positive class.
     pub positive_samples: u64,
-    /// Number of pixels that strokes of both classes cover. Each of them belongs to the later stroke.
+    /// Number of pixels that strokes of both classes cover. Such a pixel belongs to the later stroke.
     pub contradictory_pixels: u64,
 }
 

@@ -17,7 +17,7 @@ const MAX_MESSAGES: usize = 256;
 pub(super) struct Context {
     /// Threads that run the jobs.
     pub(super) pool: Pool,
-    /// Threads of synchronous calls. They are not those of `pool`, so that these calls never wait for a job.
+    /// Threads of synchronous calls. `pool` has other threads, so that these calls never wait for a job.
     pub(super) quick: ShortTaskPools,
     budget: u64,
     used: AtomicU64,

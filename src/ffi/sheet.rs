@@ -113,9 +113,9 @@ pub unsafe extern "C" fn luxfer_sheet_print(
 
 /// Aligns a photo or scan (linear RGB) of a painted sheet with the picture of width x height pixels for which the
 /// sheet was printed. The call finds the marks in the photo and resamples the photo to the pixels of the picture: the
-/// result is the artwork, in linear RGB. params must be equal to those of luxfer_sheet_print; NULL stands for the
-/// defaults. The photo may be rotated and in perspective. size is sizeof *report; report may be NULL, then size does
-/// not matter. The call takes up to a few seconds. The caller releases *artwork. Any thread.
+/// result is the artwork, in linear RGB. params must be equal to the settings given to luxfer_sheet_print; NULL stands
+/// for the defaults. The photo may be rotated and in perspective. size is sizeof *report; report may be NULL, then size
+/// does not matter. The call takes up to a few seconds. The caller releases *artwork. Any thread.
 /// LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_sheet_align(

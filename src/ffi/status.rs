@@ -3,9 +3,9 @@
 //! Every function that can fail returns a luxfer_status. Values are never changed or reused; new values may be added.
 //! A function writes its outputs only if it returns LUXFER_OK. luxfer_context_get_last_error describes a failure in
 //! words. The comment of a function lists its errors. Some errors hold for every function, even if its comment does not
-//! name them: LUXFER_INVALID_ARGUMENT for a NULL pointer unless the comment allows NULL, and for an argument that is
-//! none of the constants of its type; LUXFER_OUT_OF_MEMORY if the memory budget of the context, or the machine, is used
-//! up.
+//! name them: LUXFER_INVALID_ARGUMENT for a NULL pointer unless the comment allows NULL, and for an argument whose type
+//! has constants and whose value is not one of them; LUXFER_OUT_OF_MEMORY if the memory budget of the context, or the
+//! machine, is used up.
 
 use std::ffi::c_char;
 

@@ -160,7 +160,7 @@ pub unsafe extern "C" fn luxfer_strokes_create(
 /// Adds a stroke along a polyline; one point makes a dot. phase is a LUXFER_PHASE_ value. The parameter positive is 1
 /// for a stroke on the plane or on lights, 0 for a stroke beside them. The array points holds point_count pairs of
 /// floats, x and y in pixels; the centre of the top-left pixel is (0.5, 0.5). radius is in pixels, in [0.001, 4096]. A
-/// pixel that several strokes cover belongs to the last one. Any thread.
+/// pixel that several strokes cover belongs to the last of these strokes. Any thread.
 /// LUXFER_INVALID_ARGUMENT if there is no point, a coordinate is not finite, or radius or positive is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_strokes_add(

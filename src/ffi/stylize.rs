@@ -173,9 +173,9 @@ pub unsafe extern "C" fn luxfer_stylize_set_artwork(
     })
 }
 
-/// Adds a guide, or replaces the guide of the same name. The image source shows the exemplar scene, and the image
-/// target shows the scene to paint; both have the same number of channels. If target is NULL, source serves as the
-/// target too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). name is UTF-8.
+/// Adds a guide, or replaces the guide that has this name. The image source shows the exemplar scene, and the image
+/// target shows the scene to paint; both have equal numbers of channels. If target is NULL, source serves as the target
+/// too; use this for a picture of which one part is painted already (luxfer_stylize_set_painted). name is UTF-8.
 /// weight, in [0, 1e6], is relative to the other guides; range is a LUXFER_GUIDE_ value. Any thread.
 ///
 /// All sources must have one size, and all targets one size. All guides together have at most 60 channels. In a
@@ -390,12 +390,11 @@ pub unsafe extern "C" fn luxfer_stylize_start(
 }
 
 /// Starts a job that updates the picture after the artist has changed the artwork. artwork is the new artwork, with
-/// the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs
-/// from the old one. The pixels of the picture that were painted from these places are painted again, in a fraction of
-/// the time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if
-/// the artwork changes there. At the border of these pixels, the update lets a step in colour fade out into the new
-/// paint, in the same way as luxfer_stylize_start; unlike luxfer_stylize_start, it does not continue strokes across the
-/// border anew. The caller releases *job. Any thread.
+/// the size and channels of the old one. changed_mask has 1 channel, above 0.5 where the new artwork differs from the
+/// old artwork. The pixels of the picture that were painted from these places are painted again, in a fraction of the
+/// time of luxfer_stylize_start. Pixels outside the target mask stay as luxfer_stylize_start has left them, even if the
+/// artwork changes there. At the border of these pixels, luxfer_stylize_start continues strokes, and lets a step in
+/// colour fade out into the new paint; an update only lets the step fade out. The caller releases *job. Any thread.
 /// LUXFER_INVALID_OPERATION if no job with keep_for_update = 1 has succeeded, or while a job runs. The job may end
 /// with LUXFER_INVALID_ARGUMENT if sizes differ. If an update is cancelled, the next update does the remaining work
 /// too.
@@ -433,8 +432,8 @@ pub unsafe extern "C" fn luxfer_stylize_update(
 /// inverse mask with the artwork as the known picture. The painted pixels stay as they are. The new paint continues
 /// strokes across the border of the painted part, and this border is hardly visible. To avoid visible copies, the
 /// library hardly ever uses a patch of the artwork more than 100 times as often as the average patch. If the painted
-/// part lacks light that the rest shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a place
-/// where the artist should paint.
+/// part lacks light that the unpainted part shows, the result has the warning LUXFER_WARNING_LIGHT_NOT_PAINTED, with a
+/// place where the artist should paint.
 /// LUXFER_INVALID_OPERATION before the artwork is set; LUXFER_INVALID_ARGUMENT if painted does not have the artwork's
 /// size or has more than 1 channel.
 #[unsafe(no_mangle)]

@@ -2,10 +2,10 @@
 //!
 //! Presets and settings. StyLit is the paper of Fiser et al. 2016, "StyLit: Illumination-Guided Example-Based
 //! Stylization of 3D Renderings". As in StyLit, exemplar patches are matched with target patches in several passes. In
-//! each pass, every exemplar patch finds its nearest target patch among those that are still free. The pairs are
-//! accepted, smallest error first, until the sum of their errors reaches the error budget, which the library computes
-//! from the errors of the pass. This prevents a few patches from being used everywhere, and bad matches from being
-//! forced. The defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
+//! each pass, every exemplar patch finds the nearest target patch that has no match yet. The pairs are accepted,
+//! smallest error first, until the sum of their errors reaches the error budget, which the library computes from the
+//! errors of the pass. This prevents a few patches from being used everywhere, and bad matches from being forced. The
+//! defaults were chosen from the curves of quality against time that benches/stylit.rs draws.
 
 use super::guard::guard;
 use super::params::{self, versioned};
@@ -60,7 +60,8 @@ pub struct luxfer_stylize_params {
     pub struct_size: u32,
     /// Search for nearest patches: a LUXFER_STYLIZE_SEARCH_ value; default LUXFER_STYLIZE_SEARCH_PATCHMATCH.
     pub search: luxfer_stylize_search,
-    /// Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if the images are smaller than that.
+    /// Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if an image is smaller than one
+    /// patch.
     pub patch: u32,
     /// Weight of all guides together, relative to the weight of all colour channels of the artwork together, in [0,
     /// 1e6]; default 2.
@@ -109,8 +110,8 @@ pub struct luxfer_stylize_params {
     /// from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. No effect without
     /// luxfer_stylize_set_motion.
     pub coherence: f32,
-    /// Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the target's
-    /// light guides, in [0, 1]; 0, the default: not at all.
+    /// Degree to which the exemplar's light guides are adapted, in brightness and contrast, to the target's light
+    /// guides, in [0, 1]; 0, the default: not at all.
     pub match_appearance: f32,
     /// Must be 0.
     pub reserved: u32,

@@ -60,9 +60,9 @@ pub struct luxfer_stylize_report {
     pub broken_source: u64,
     /// Number of target pixels with a guide value that is not finite and was taken as 0.
     pub broken_target: u64,
-    /// Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the others are blends of
-    /// several artwork pixels. LUXFER_STYLIZE_VOTE_ADAPTIVE gives rough paint a larger share than smooth paint.
-    /// luxfer_stylize_update leaves this value as the last full run has set it.
+    /// Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the other painted pixels are
+    /// blends of several artwork pixels. LUXFER_STYLIZE_VOTE_ADAPTIVE gives rough paint a larger share than smooth
+    /// paint. luxfer_stylize_update leaves this value as the last full run has set it.
     pub unblended_share: f64,
     /// Weight of the normals as a guide, where each guide of light has 1; 0: the normals are not used. Unless the
     /// caller has given this weight, it is above 0 only if the strokes of the artwork follow the shapes; see

@@ -329,7 +329,7 @@ pub unsafe extern "C" fn luxfer_transfer_set_texture(
 }
 
 /// Sets the camera of the rendered picture. camera may be NULL, the default: the first camera of the scene, or a camera
-/// in a corner of the room if the scene has none. Any thread.
+/// in a corner of the room if the scene has no camera. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value of camera is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_set_camera(
@@ -387,7 +387,7 @@ pub unsafe extern "C" fn luxfer_transfer_set_zones(
 
 /// Replaces the result of the stage VIEW by the lines and the camera of a luxfer_rectify. If that object has unwarped
 /// a plane, this plane replaces the result of the stage UNWARP. The transfer then keeps this camera, even if the
-/// photo's lamps suggest another one. Any thread.
+/// photo's lamps suggest another camera. Any thread.
 /// LUXFER_NOT_READY if rectify has no result yet.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_transfer_use_rectify(

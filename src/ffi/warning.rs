@@ -31,7 +31,7 @@ pub struct luxfer_warnings {
     _opaque: [u8; 0],
 }
 
-/// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new ones may be added.
+/// The code of a warning: a LUXFER_WARNING_ value. Values are never changed or reused; new values may be added.
 pub type luxfer_warning_code = i32;
 /// The vanishing points determine the focal length poorly, so it was mainly assumed; the severity is the relative
 /// standard deviation of the focal length, or the limit if the limit is larger.
@@ -68,10 +68,11 @@ pub const LUXFER_WARNING_ALMOST_ALL_LIT: luxfer_warning_code = 12;
 /// Much of the unwarped plane is magnified more than 4 times from the photo; the severity is the share of the plane
 /// that is magnified so much. The warning points to the point with the largest magnification.
 pub const LUXFER_WARNING_MAGNIFIED: luxfer_warning_code = 13;
-/// The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the viewing
-/// ray, the median over the plane; it is below the limit. The warning points to the point with the smallest angle.
+/// The camera sees the plane nearly edge-on. The severity is the median, over the plane, of the sine of the angle
+/// between the plane and the viewing ray; it is below the limit. The warning points to the point with the smallest
+/// angle.
 pub const LUXFER_WARNING_PLANE_NEAR_HORIZON: luxfer_warning_code = 14;
-/// The statistics of the texture differ from those of the photo; the severity is luxfer_emission_report.error.
+/// The texture and the photo differ in the statistics of their lamps; the severity is luxfer_emission_report.error.
 pub const LUXFER_WARNING_PATTERN_UNCERTAIN: luxfer_warning_code = 15;
 /// The photo shows too few whole lamps for a pattern; the severity is the number of whole lamps, which is below the
 /// limit.
@@ -86,8 +87,8 @@ pub const LUXFER_WARNING_UNREACHABLE: luxfer_warning_code = 18;
 /// these channels.
 pub const LUXFER_WARNING_TARGET_CLIPPED: luxfer_warning_code = 19;
 /// A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the implausible
-/// height or width in metres. For a scene that is too small, it is the larger of the two, and is below the limit. The
-/// message names the likely unit.
+/// height or width in metres. For a scene that is too small, it is the larger of height and width, and is below the
+/// limit. The message names the likely unit.
 pub const LUXFER_WARNING_IMPLAUSIBLE_SIZE: luxfer_warning_code = 20;
 /// The file of a scene has a feature or an extension that is not rendered. The message names the feature and the first
 /// objects that have it; the severity is the number of these objects.
@@ -112,7 +113,7 @@ pub const LUXFER_WARNING_FAR_FROM_ORIGIN: luxfer_warning_code = 25;
 pub const LUXFER_WARNING_NOT_IN_PICTURE: luxfer_warning_code = 26;
 /// Objects that this frame of a sequence shows are missing in the previous frame, or have other triangles there. Their
 /// motion is unknown and therefore NaN. The severity is the share of the picture that shows these objects; the message
-/// names them. The warning points to a pixel of the largest one.
+/// names them. The warning points to a pixel of the largest of these objects.
 pub const LUXFER_WARNING_NO_COUNTERPART: luxfer_warning_code = 27;
 /// The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame shows another
 /// surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is compared with the exact
@@ -126,12 +127,12 @@ pub const LUXFER_WARNING_MOTION_DISAGREES: luxfer_warning_code = 28;
 /// such pixels among the pixels to paint; LUXFER_STYLIZE_IMAGE_GUIDE_ERROR shows them. The warning points to the place
 /// of the target where most of them lie.
 pub const LUXFER_WARNING_LIGHT_NOT_PAINTED: luxfer_warning_code = 29;
-/// Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The severity is
-/// the share of the exemplar that such places cover. The warning points to one of them in the artwork.
+/// Places of the exemplar with equal guides are painted in two ways, which a stylisation mixes. The severity is the
+/// share of the exemplar that such places cover. The warning points to one of them in the artwork.
 pub const LUXFER_WARNING_AMBIGUOUS_PAINT: luxfer_warning_code = 30;
-/// A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is
-/// the difference in paint between this place and those places, divided by the difference in paint that places with
-/// equal guides typically have. The warning points to the place in the artwork.
+/// A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The severity is the
+/// difference in paint from this place that all but 5 % of the places with similar guides exceed, divided by the
+/// typical difference in paint between places with equal guides. The warning points to the place in the artwork.
 pub const LUXFER_WARNING_BLEMISH: luxfer_warning_code = 31;
 
 /// A warning: a reason to doubt a result.

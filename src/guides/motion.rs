@@ -60,7 +60,7 @@ pub fn motion(now: &Surfaces, before: &Surfaces, job: Job) -> Result<Motion> {
 
 /// The given motion of a pixel is wrong if it differs by more than this number of pixels from the true motion of the
 /// pixel and of each of its eight neighbours. The neighbours count because a renderer may give a pixel at a silhouette
-/// the motion of the object or that of the background. [convention]
+/// the motion of the object or the motion of the background. [convention]
 const MAX_ERROR: f32 = 1.0;
 
 /// Compares a given motion with the true motion of the surfaces, where both are known.

@@ -120,7 +120,7 @@ fn convert_stored(
 }
 
 /// Returns width, height and an upper bound of the number of channels of a picture file, from its header alone. Width
-/// and height are those of the stored picture, before it is turned upright.
+/// and height belong to the stored picture, before it is turned upright.
 pub fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
     match Format::of(bytes)? {
         Format::Exr => openexr::probe(bytes),

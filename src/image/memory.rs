@@ -14,7 +14,7 @@ use exr::meta::header::Header;
 use image::ImageFormat;
 
 /// Maximum size in bytes of a colour profile; larger ones are ignored. Profiles of displays and cameras have a few
-/// thousand bytes, those of scanners up to a million. [convention]
+/// thousand bytes, profiles of scanners up to a million. [convention]
 pub const MAX_PROFILE_BYTES: usize = 3 << 20;
 
 /// Returns an error if the system cannot provide `bytes` bytes.

@@ -174,9 +174,9 @@ impl Place {
     }
 }
 
-/// Returns the colour space with the stated chromaticities, or with those of Rec.709 if only `neutral` is stated.
-/// Colours of the chromaticity `neutral` become white; without `neutral`, colours of the stated white do. `Unstated` if
-/// the file states neither.
+/// Returns the colour space with the stated chromaticities, or with the chromaticities of Rec.709 if only `neutral` is
+/// stated. Colours of the chromaticity `neutral` become white; without `neutral`, colours of the stated white do.
+/// `Unstated` if the file states neither.
 fn space(stated: Option<attribute::Chromaticities>, neutral: Option<ex::Vec2<f32>>) -> Space {
     let point = |v: ex::Vec2<f32>| [f64::from(v.0), f64::from(v.1)];
     let chromaticities = match stated {

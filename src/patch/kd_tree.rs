@@ -114,8 +114,8 @@ fn widest(means: &Means, members: &[u32]) -> usize {
 }
 
 impl Search<'_> {
-    /// Compares each active patch with up to `tries` allowed patches, beginning with those that are nearest to the
-    /// patch's leaf in the order of the leaves. A match is replaced only by a closer one.
+    /// Compares each active patch with up to `tries` allowed patches, beginning with the patches that are nearest to
+    /// the patch's leaf in the order of the leaves. A match is replaced only by a closer one.
     pub fn look_up(
         &self,
         field: &mut Field,

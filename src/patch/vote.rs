@@ -19,8 +19,8 @@ pub enum VoteMode {
     Weighted,
     /// The pixel whose colour is closest to the mean: introduces no new colours, so texture keeps its contrast.
     Nearest,
-    /// The pixel placed most often (ties: the one closest to the mean). Where two pieces of the exemplar meet, each
-    /// piece stays intact up to the seam.
+    /// The pixel placed most often; among equally frequent pixels, the pixel closest to the mean. Where two pieces of
+    /// the exemplar meet, each piece stays intact up to the seam.
     Majority,
     /// A blend of `Plain` and `Majority` that has as much fine detail as the exemplar: see the module `adaptive`.
     Adaptive,
@@ -77,7 +77,7 @@ pub fn origin(field: &Field, patch: usize, x: usize, y: usize) -> Option<(usize,
 }
 
 /// Returns the share of whole exemplar pixels in `picture`, among the pixels that have a match and for which `wanted`
-/// holds. A pixel is whole if its colour is that of an exemplar pixel that a patch places there.
+/// holds. A pixel is whole if it has the colour of an exemplar pixel that a patch places there.
 pub fn whole_share(
     picture: &Image,
     field: &Field,

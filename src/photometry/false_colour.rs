@@ -45,7 +45,7 @@ impl Default for Params {
     }
 }
 
-/// Linear colour of pixels whose value is NaN, such as those between the triangles in an illuminance map of a mesh.
+/// Linear colour of pixels whose value is NaN, such as pixels between the triangles in an illuminance map of a mesh.
 /// [convention]
 const NO_VALUE: Vec3 = Vec3::splat(0.05);
 /// Colours of the background and of the text of the scale bar. [convention]

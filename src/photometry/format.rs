@@ -77,7 +77,7 @@ impl Format {
     /// from 0; with `None`, the first variant is read.
     ///
     /// # Errors
-    /// Those of the format's reader; `InvalidArgument` if `variant` is given but the format has no variants.
+    /// The errors of the format's reader; `InvalidArgument` if `variant` is given but the format has no variants.
     pub fn read(self, bytes: &[u8], variant: Option<&str>) -> Result<File> {
         if let (Some(variant), true) = (variant, self != Self::Gldf) {
             return Err(Error::argument(format!("the variant is {variant:?}, but only GLDF containers have variants")));
@@ -94,7 +94,7 @@ impl Format {
     /// Writes a luminaire as a file of this format.
     ///
     /// # Errors
-    /// Those of [`Luminaire::check`].
+    /// The errors of [`Luminaire::check`].
     pub fn write(self, luminaire: &Luminaire) -> Result<Vec<u8>> {
         match self {
             Self::Ies => ies::write(luminaire).map(String::into_bytes),

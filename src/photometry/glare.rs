@@ -6,7 +6,7 @@
 //! by its mean luminance would underestimate the glare of emissive textures, which are not uniform (Scheir et al.
 //! 2017). The background luminance is the mean over the remaining pixels, weighted by the contribution of each pixel to
 //! the illuminance at the eye; an image with a wider angle of view makes this mean more accurate. Above the line of
-//! sight, the position index is Guth's; below it, the position index is that of Iwata and Tokura (1997), as in
+//! sight, the position index is Guth's; below it, the position index follows Iwata and Tokura (1997), as in
 //! `evalglare`.
 
 use crate::error::{Error, Result, check_range};

@@ -141,7 +141,7 @@ fn keywords<'a>(
 /// Writes a luminaire as an LM-63-2002 file.
 ///
 /// # Errors
-/// Those of [`Luminaire::check`].
+/// The errors of [`Luminaire::check`].
 pub fn write(luminaire: &Luminaire) -> Result<String> {
     luminaire.check()?;
     let l = luminaire;

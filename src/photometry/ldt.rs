@@ -76,7 +76,8 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
         return Err(at(rows.line, format_args!("{gammas} x {planes} intensities; at most {MAX_VALUES} are read")));
     }
 
-    // Read the sizes in millimetres: first those of the housing, which are not used, then those of the luminous area.
+    // Read the sizes in millimetres: first the sizes of the housing, which are not used, then the sizes of the luminous
+    // area.
     rows.list(3, "a size of the luminaire", 0.0, 1e7)?;
     let [length, width] = [rows.within("the luminous length", 0.0, 1e7)?, rows.within("the luminous width", 0.0, 1e7)?];
     // Read the luminous heights of the four sides, which face towards C = 0, 90, 180 and 270.
@@ -245,7 +246,7 @@ fn opening(l: &Luminaire) -> [f64; 3] {
 /// symmetry.
 ///
 /// # Errors
-/// Those of [`Luminaire::check`].
+/// The errors of [`Luminaire::check`].
 pub fn write(luminaire: &Luminaire) -> Result<String> {
     luminaire.check()?;
     let l = luminaire;

@@ -45,8 +45,8 @@ impl Face {
         self.sides[0].cross(self.sides[1]).dot(direction).abs() * share
     }
 
-    /// Maps the unit square to the face. Regions of equal area have images of equal area; for an ellipse, the map is
-    /// that of Shirley and Chiu (1997).
+    /// Maps the unit square to the face. Regions of equal area have images of equal area; for an ellipse, the map
+    /// follows Shirley and Chiu (1997).
     pub fn point(&self, [u, v]: [f64; 2]) -> DVec3 {
         let (x, y) = (2.0 * u - 1.0, 2.0 * v - 1.0);
         let (x, y) = match self.is_round {

@@ -1,11 +1,10 @@
 //! Requirements of EN 12464-1 for common rooms: maintained illuminance, glare, uniformity, colour rendering, and
 //! illuminance of walls and ceilings.
 //!
-//! This is a short excerpt for design. The values are those that luminaire manufacturers quote publicly, and each row
-//! states its edition of the standard. The rows of schools and libraries are from the tables of 2021, as quoted by
-//! Glamox. The rows of offices have 500 lx with U0 0.6, and 300 lx with U0 0.4, as quoted by Trilux, Fagerhult and
-//! Performance in Lighting; their walls and ceilings are from the edition of 2011. Only the standard itself is
-//! authoritative.
+//! This is a short excerpt for design. Luminaire manufacturers quote these values publicly, and each row states its
+//! edition of the standard. The rows of schools and libraries are from the tables of 2021, as quoted by Glamox. The
+//! rows of offices have 500 lx with U0 0.6, and 300 lx with U0 0.4, as quoted by Trilux, Fagerhult and Performance in
+//! Lighting; their walls and ceilings are from the edition of 2011. Only the standard itself is authoritative.
 
 use std::ffi::CStr;
 

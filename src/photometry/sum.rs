@@ -12,8 +12,8 @@ pub const MAX_PARTS: usize = 64;
 const STEP: f64 = 1e-3;
 
 /// Adds distributions up. The sum contains the angles of all parts, so that it is exact wherever the parts are
-/// interpolated linearly. Its name and manufacturer are those of the first part; its opening is that of the part with
-/// the largest opening. Power is added up; colour temperature and colour rendering are kept only if all parts agree.
+/// interpolated linearly. It has the name and the manufacturer of the first part, and the opening of the part with the
+/// largest opening. Power is added up; colour temperature and colour rendering are kept only if all parts agree.
 ///
 /// # Errors
 /// `Format` if there are too many parts or too many angles.

@@ -47,7 +47,7 @@ pub fn of_chromaticity(xy: DVec2) -> Temperature {
     let mired = search(|mired| locus(1e6 / mired).distance_squared(uv));
     let kelvin = 1e6 / mired;
     let nearest = locus(kelvin);
-    // A colour lies above the locus if its v is larger than that of the nearest blackbody.
+    // A colour lies above the locus if its v is larger than the v of the nearest blackbody.
     let side = if uv.y >= nearest.y { 1.0 } else { -1.0 };
     Temperature { kelvin, duv: side * uv.distance(nearest) }
 }

@@ -20,8 +20,8 @@
 //! Not modelled:
 //!
 //! - the stages before the lighting: they have no settings that trade error for time, and report their own errors;
-//! - bright paths so rare that the tiles of the plan contain few or none of them, such as those of a small lamp seen in
-//!   a polished surface: the picture's error may then be half or twice the expected error;
+//! - bright paths so rare that the tiles of the plan contain few or none of them, such as the paths to a small lamp
+//!   seen in a polished surface: the picture's error may then be half or twice the expected error;
 //! - the overshoot of a picture that stops at a target error: up to one pass;
 //! - the layers that are rendered beside the main image ([`crate::render::Outputs`]), which take time of their own.
 

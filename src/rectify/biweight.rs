@@ -4,7 +4,7 @@
 
 use std::sync::LazyLock;
 
-/// Means over those residuals `r` with `|r| < 1`, for normally distributed residuals of known variance. As the variance
+/// Means over the residuals `r` with `|r| < 1`, for normally distributed residuals of known variance. As the variance
 /// tends to 0, all three means tend to 1. They fall as the variance grows.
 #[derive(Clone, Copy, Debug)]
 pub struct Biweight {

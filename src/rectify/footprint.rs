@@ -48,8 +48,8 @@ impl Footprints {
 
 /// The map from output pixels to the source image.
 pub struct Map {
-    /// The homography from output pixels to source pixels, column by column. If there is a lens, the pixels are those
-    /// that an ideal lens would show.
+    /// The homography from output pixels to source pixels, column by column. If there is a lens, these are pixels of
+    /// the image that an ideal lens would show.
     pub to_source: [f64; 9],
     /// Sign of the third homogeneous coordinate of points in front of the camera. The centre of the output image is
     /// assumed to be in front of the camera.

@@ -16,7 +16,7 @@ use glam::{DMat3, DQuat, DVec3};
 /// unknown and for a known focal length; the difference is the loss by the search for the focal length. [bench vp]
 const FOCALS: [f64; 7] = [0.7, 0.95, 1.3, 1.7, 2.2, 3.2, 5.5];
 
-/// Range of focal lengths in the refinement: angles of view from 9.5 to 136 degrees, a wider range than that of
+/// Range of focal lengths in the refinement: angles of view from 9.5 to 136 degrees, a wider range than the range of
 /// [`FOCALS`]. It prevents steps from a bad start from leading to a degenerate focal length. [convention]
 const FOCAL_RANGE: [f64; 2] = [0.4, 12.0];
 /// Weight that fixes a given focal length in the refinement, relative to the weight of the lines. [rounding]

@@ -1,7 +1,7 @@
 //! Computes the 4 × 4 source samples (taps) around each pixel of a run, and their filter weights.
 //!
-//! Where the source is magnified, the weights are those of bicubic interpolation (Catmull-Rom). Where it is minified,
-//! each sample is weighted by the share of the footprint that the sample covers, row by row, since the footprint is a
+//! Where the source is magnified, the weights come from bicubic interpolation (Catmull-Rom). Where it is minified, each
+//! sample is weighted by the share of the footprint that the sample covers, row by row, since the footprint is a
 //! sheared rectangle. For a footprint of one pixel the two filters differ only by the sharpening terms of the cubic,
 //! which fade out as the footprint grows beyond one pixel.
 

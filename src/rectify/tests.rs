@@ -168,7 +168,7 @@ fn the_stated_error_of_a_focal_length_from_lines_is_its_true_error() {
         println!("{per_axis} lines an axis: {mean:.2}");
         assert!((0.5..1.6).contains(&mean), "{per_axis}: {mean}");
     }
-    // The error of an assumed focal length is that of the prior. A given focal length has no error.
+    // The error of an assumed focal length is the error of the prior. A given focal length has no error.
     let ahead = room(&camera(0.0, 0.0, 0.0, 1000.0), [20, 20, 20], 0.0, 3);
     let stated = |params: &Params| view_of(&ahead, params).unwrap().focal_error();
     assert!((stated(&Params::default()) - 0.35 * 680.0).abs() < 1.0, "{}", stated(&Params::default()));

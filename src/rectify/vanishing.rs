@@ -57,8 +57,8 @@ pub struct Vanishing {
     pub(super) free: Vec<Refined>,
     /// Focal length, in pixels, with which the directions were estimated: the given one, if any.
     ///
-    /// Without a given focal length, the Manhattan search takes the one for which the directions are most nearly
-    /// orthogonal; it is a weak guess if only one point is finite. The successive search takes
+    /// Without a given focal length, the Manhattan search takes the focal length for which the directions are most
+    /// nearly orthogonal; it is a weak guess if only one point is finite. The successive search takes
     /// `manhattan::USUAL_FOCAL`.
     pub focal: f64,
 }
@@ -142,7 +142,7 @@ fn orthogonal_and_further(
     };
     let focal = triplet.focal;
     let mut found = refine_freely(lines, &[0, 1, 2].map(|k| triplet.axes.col(k)), focal);
-    // Find further directions from the lines that run towards none of the directions found so far.
+    // Find further directions from the lines that do not run towards any direction found so far.
     while found.len() < count && !found.is_empty() {
         let points: Vec<DVec3> = found.iter().map(|r| project(r.expected.direction, focal)).collect();
         let rest: Vec<WeightedLine> =

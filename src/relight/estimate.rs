@@ -1,7 +1,7 @@
 //! Statistics of independent batches: means, confidence intervals, and intervals of derived quantities.
 
-/// Number of batches of an estimate. With 32 batches, the 97.5 % quantile of Student's t is 4 % above that of the
-/// normal distribution. \[convention\]
+/// Number of batches of an estimate. With 32 batches, the 97.5 % quantile of Student's t is 4 % above the quantile of
+/// the normal distribution. \[convention\]
 pub const BATCHES: usize = 32;
 
 /// 97.5 % quantile of Student's t with `BATCHES - 1` = 31 degrees of freedom. [convention]

@@ -143,7 +143,8 @@ impl Powers {
 
     /// Computes the half-widths of the 95 % confidence intervals of all groups by the jackknife
     /// ([`super::estimate::pseudo_values`]). `without` holds, for each batch, the powers solved without this batch.
-    /// The pseudo-values are not computed: their standard deviation is `n - 1` times that of the powers in `without`.
+    /// The pseudo-values are not computed: their standard deviation is `n - 1` times the standard deviation of the
+    /// powers in `without`.
     fn jackknife(&self, without: &[Self], job: Job) -> Result<Self> {
         let n = BATCHES as f64;
         let width = |list: usize| {

@@ -178,8 +178,8 @@ impl Importance {
     }
 
     /// Computes the response of the target to a texture on the surface, in the unit of the texture's values.
-    /// `placement` transforms the surface's texture coordinates to those of the texture (as `KHR_texture_transform`).
-    /// Outside the unit square, the texture's wrap mode applies.
+    /// `placement` transforms the surface's texture coordinates to the coordinates of the texture (as
+    /// `KHR_texture_transform`). Outside the unit square, the texture's wrap mode applies.
     ///
     /// # Errors
     /// A placement that is not finite; cancelled.

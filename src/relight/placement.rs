@@ -38,8 +38,8 @@ pub enum Aim {
     Darkest,
 }
 
-/// The placement of a texture. It maps the surface's texture coordinates to those of the texture: scales and then
-/// rotates them about the centre `(½, ½)`, and adds the offset.
+/// The placement of a texture. It maps the surface's texture coordinates to the coordinates of the texture: scales and
+/// then rotates them about the centre `(½, ½)`, and adds the offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     pub offset: DVec2,

@@ -2,8 +2,8 @@
 //!
 //! Light is additive and non-negative, so the reachable colours form a cone, or a bounded part of it if the drives are
 //! bounded. The nearest reachable colour is a least squares problem of three equations in linear light
-//! ([`super::bounded`]). Among mixtures of equal colour, the regularisation selects the one with the smallest sum of
-//! squared drives, which spreads the load.
+//! ([`super::bounded`]). Among mixtures of equal colour, the regularisation selects the mixture with the smallest sum
+//! of squared drives, which spreads the load.
 
 use super::bounded::BoundedLeastSquares;
 use crate::error::{Error, Result, check_range};
@@ -33,8 +33,8 @@ pub struct Mixture {
 }
 
 /// Mixes the linear RGB colour `wanted` from primaries such as LEDs, each with a drive from 0 to `max_drive`. A
-/// primary is given by its linear RGB colour at a drive of 1. Colours outside the gamut of RGB, such as those of most
-/// LEDs, have negative channels.
+/// primary is given by its linear RGB colour at a drive of 1. Colours outside the gamut of RGB, such as the colours of
+/// most LEDs, have negative channels.
 ///
 /// # Errors
 /// Numbers that are not finite or out of range; no primaries or more than [`MAX_PRIMARIES`]; primaries that are all

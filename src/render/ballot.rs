@@ -18,8 +18,8 @@ pub fn cast(ballot: &mut [f64], candidate: f64, votes: f64) {
     let Some(place) =
         slots.iter().position(|s| s[1] > 0.0 && s[0] == candidate).or_else(|| slots.iter().position(|s| s[1] == 0.0))
     else {
-        // No slot is free. Let m be the smallest number of votes among the new candidate and those in the ballot:
-        // subtract m from each of them, and cast the new candidate's remaining votes.
+        // No slot is free. Let m be the smallest number of votes among the new candidate and the candidates in the
+        // ballot: subtract m from each of them, and cast the new candidate's remaining votes.
         let min_votes = slots.iter().fold(votes, |min_votes, s| min_votes.min(s[1]));
         slots.iter_mut().for_each(|s| s[1] -= min_votes);
         if votes > min_votes {

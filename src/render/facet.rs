@@ -29,8 +29,8 @@ pub struct Facet {
 pub const OFFSET: f32 = 1.0 / (1 << 20) as f32;
 /// A free point (`Vertex::free`) belongs to no triangle but may happen to lie in a surface. To leave such a surface,
 /// its rays start at a distance of `OFFSET * max(p, min(c, MAX_FREE_COORDINATE))`. Here p is the largest coordinate of
-/// the point and c that of the scene, in metres. Without the limit, in a scene as large as a country, the offset would
-/// move the point through a wall. [convention]
+/// the point and c the largest coordinate of the scene, in metres. Without the limit, in a scene as large as a country,
+/// the offset would move the point through a wall. [convention]
 pub const MAX_FREE_COORDINATE: f32 = 256.0;
 /// The region where most triangles of a scene lie counts as far from the origin if the largest coordinate of their
 /// median position exceeds `FAR` times half the region's extent. [convention]

@@ -282,8 +282,8 @@ impl<'a> Goniometer<'a> {
     }
 
     /// Returns the size of the luminous opening as in [`Luminaire::size`], where a minus sign stands for a round shape.
-    /// Of the shapes that fill the box around the emitting parts, chooses the one whose projected areas are nearest to
-    /// the measured luminous areas.
+    /// Of the shapes that fill the box around the emitting parts, chooses the shape whose projected areas are nearest
+    /// to the measured luminous areas.
     fn size(&self, directions: &[[f64; 2]], measured: &[Intensity]) -> [f64; 3] {
         let size = self.emitting.size();
         let least = size.max_element() * FLAT;

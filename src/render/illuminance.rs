@@ -216,7 +216,7 @@ fn receivers(world: &World, place: &CalculationPoints, params: &Params) -> Resul
 }
 
 /// Finds for each texel the triangle that covers the texel's centre, and the barycentric coordinates of the centre;
-/// `None` if no triangle covers the centre. If several triangles do, the one with the smallest index is used.
+/// `None` if no triangle covers the centre. If several triangles do, the triangle with the smallest index is used.
 fn texels(world: &World, mesh: usize, params: &Params) -> Result<Vec<Option<(u32, Vec2)>>> {
     let meshes = &world.scene().meshes;
     let found = meshes

@@ -1,9 +1,9 @@
 //! Luminaires that shine from the faces of their luminous openings.
 //!
 //! A face has the same luminance at all of its points: in direction ω it is `L(ω) = I(ω) / A(ω)`, with the measured
-//! intensity I and the projected area A of all faces. So the intensity at a distance is exactly the measured one, and
-//! the near field is that of a uniform surface. Faces reflect no light: the measured intensity contains all light that
-//! leaves them in a dark room.
+//! intensity I and the projected area A of all faces. So the luminaire has exactly the measured intensity at a
+//! distance, and the near field of a uniform surface. Faces reflect no light: the measured intensity contains all light
+//! that leaves them in a dark room.
 
 use super::bounds::{Bounds, CONE_MARGIN};
 use super::facet;

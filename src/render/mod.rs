@@ -94,7 +94,7 @@ pub struct SurfacePoint {
 
 /// Adds one sample of the irradiance (lux) at a point to a sink. `sample` is the index of the sample; each `seed`
 /// selects an independent sequence of samples. The samples of one seed are stratified: their mean converges faster than
-/// that of independent samples, and best if their number is a power of two. A point that is not on a surface of the
+/// the mean of independent samples, and best if their number is a power of two. A point that is not on a surface of the
 /// scene, or that lies on a degenerate triangle, adds nothing.
 pub fn irradiance<S: PathSink>(world: &World, point: &SurfacePoint, seed: u64, sample: u32, sink: &mut S) {
     let mesh = world.scene().meshes.get(point.mesh as usize);

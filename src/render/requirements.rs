@@ -25,8 +25,8 @@ pub struct Requirements {
     pub alpha: bool,
     pub normal_maps: bool,
     /// For each kind of light, whether the scene has a light of this kind that emits. `textured_surfaces` tells whether
-    /// the emission of a surface varies with a texture. Luminaires with faces count as surfaces, those without faces as
-    /// points.
+    /// the emission of a surface varies with a texture. Luminaires with faces count as surfaces, luminaires without
+    /// faces as points.
     pub surfaces: bool,
     pub textured_surfaces: bool,
     pub points: bool,
@@ -150,8 +150,8 @@ impl Range {
 pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec<CompiledMaterial>) {
     let ranges: Vec<Range> = scene.textures.iter().map(|t| range_of(&t.image)).collect();
     let range = |t: &Option<TextureRef>| t.as_ref().map_or(Range::ONE, |t| ranges[t.texture]);
-    // Mark the materials that meshes use (`used`). Also mark those that have a triangle of positive area (`spread`): no
-    // other material can emit.
+    // Mark the materials that meshes use (`used`). Also mark the materials that have a triangle of positive area
+    // (`spread`): no other material can emit.
     let (mut used, mut spread) = (vec![false; scene.materials.len()], vec![false; scene.materials.len()]);
     // Find, for each material, the range of the vertex colours that multiply its base colour and its opacity. A mesh
     // without vertex colours counts as having the colour 1.

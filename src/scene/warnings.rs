@@ -52,8 +52,8 @@ impl Scene {
             .collect()
     }
 
-    /// Warns if the importer moved the scene to an origin other than that of its file. Otherwise, warns if coordinates
-    /// are so large that neighbouring `f32` values differ by more than [`MAX_SPACING`].
+    /// Warns if the importer moved the scene to an origin other than the origin of its file. Otherwise, warns if
+    /// coordinates are so large that neighbouring `f32` values differ by more than [`MAX_SPACING`].
     fn far_away(&self) -> Option<Warning> {
         if self.origin != DVec3::ZERO {
             let [x, y, z] = self.origin.to_array();
@@ -234,7 +234,7 @@ mod tests {
         assert_eq!((warnings.len(), warnings[0].code, warnings[0].severity), (1, Code::FarFromOrigin, 0.0078125));
         assert!(warnings[0].message.contains("100004 m") && warnings[0].message.contains("7.81 mm"), "{}", warnings[0]);
         // The positions are small, so they are stored precisely. The warning is still due: the positions differ from
-        // those in the file, because the importer moved the origin.
+        // the positions in the file, because the importer moved the origin.
         let moved = Scene { origin: DVec3::new(3e5, 0.0, -4e5), ..scene(0.0) };
         let warnings = moved.warnings();
         assert_eq!((warnings[0].severity, warnings[0].limit), (5e5, 0.0));

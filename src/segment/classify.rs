@@ -181,8 +181,8 @@ struct Answer {
 struct Tile {
     /// The channels as they are stored in the image.
     raw: [ChannelPlane; MAX_CHANNELS],
-    /// `all`: the standardised features that the samples store, in the order of the samples' columns. `deciding`: those
-    /// of them that the logit uses.
+    /// `all`: the standardised features that the samples store, in the order of the samples' columns. `deciding`: the
+    /// channels among them that the logit uses.
     all: [ChannelPlane; MAX_CHANNELS],
     deciding: [ChannelPlane; MAX_CHANNELS],
 }

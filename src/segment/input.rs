@@ -14,7 +14,7 @@ pub struct Input<'a> {
     pub strokes: &'a [Stroke],
     /// Mask of the pixels to classify: 1 inside, 0 outside; `None` means the whole image. In the second phase, which
     /// finds the lamps, it is the mask of the plane. Outside the mask the confidence is 0, except on three kinds of
-    /// lamps: those that reach over the mask's border, those in a hole of the mask, and those under a positive stroke.
+    /// lamps: lamps that reach over the mask's border, lamps in a hole of the mask, and lamps under a positive stroke.
     /// Strokes outside the mask still count as examples.
     pub region: Option<&'a Image>,
 }

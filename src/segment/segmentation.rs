@@ -66,8 +66,8 @@ impl Segmentation {
         }
     }
 
-    /// Removes from the mask of a plane the pixels that lie off the plane: those for which `is_off` is true. Exception:
-    /// if more than half of the pixels of a positive stroke are off, nothing is removed. The user has then painted this
+    /// Removes from the mask of a plane the pixels that lie off the plane, for which `is_off` is true. Exception: if
+    /// more than half of the pixels of a positive stroke are off, nothing is removed. The user has then painted this
     /// stroke after `is_off` was determined, so `is_off` is out of date.
     pub fn remove_off_plane<'a>(
         &mut self,

@@ -41,11 +41,11 @@ pub struct Chosen {
     pub standard: Standard,
     /// Weights of the terms (see `standardise::terms`), before calibration.
     pub weights: Vec<f64>,
-    /// Result of cross-validation that holds out parts of strokes. It applies to pixels whose features are like those
-    /// of the strokes.
+    /// Result of cross-validation that holds out parts of strokes. It applies to pixels whose features are like the
+    /// features under the strokes.
     pub held_out_parts: Validation,
-    /// Result of cross-validation that holds out whole strokes. It applies to pixels whose features are unlike those
-    /// of the strokes.
+    /// Result of cross-validation that holds out whole strokes. It applies to pixels whose features are unlike the
+    /// features under the strokes.
     pub held_out_strokes: Validation,
     /// For each class, the ellipsoid around its samples in the space of all standardised features.
     pub seen: [Ellipsoid; 2],

@@ -6,10 +6,10 @@ use super::segmentation::Model;
 use super::table::Table;
 use crate::error::Result;
 
-/// Channels that form a vector: CIELAB colour, position and normal. The components of a vector have the same unit, so
-/// they share one scale: that of the component that varies most. With a scale per channel, a channel that hardly
-/// varies would be amplified. Example: under strokes on white lamps and a white ceiling, a* and b* vary little. With
-/// scales of their own they would outweigh brightness, and dark purple frames would be classified as lamps.
+/// Channels that form a vector: CIELAB colour, position and normal. The components of a vector have one unit, so they
+/// share one scale: the scale of the component that varies most. With a scale per channel, a channel that hardly varies
+/// would be amplified. Example: under strokes on white lamps and a white ceiling, a* and b* vary little. With scales of
+/// their own they would outweigh brightness, and dark purple frames would be classified as lamps.
 const VECTORS: [std::ops::Range<usize>; 3] = [0..3, 4..7, 7..10];
 
 /// Standardisation of features, `(x - mean) * scale` per channel. The scale of a channel that does not vary is 0.

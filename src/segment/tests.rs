@@ -79,7 +79,7 @@ fn the_ceiling_then_its_lamps() {
     assert!(agreement >= 0.97, "{agreement} {:?}", plane.model);
     // The expected error must be at least the true error. The expected error is larger, because most surfaces have only
     // one stroke: when cross-validation holds this stroke out, it trains without the surface. The error on such strokes
-    // is assumed for all pixels whose features are unlike those of the painted pixels.
+    // is assumed for all pixels whose features are unlike the features of the painted pixels.
     let is_wrong = |(i, m): (usize, &f32)| (*m > 0.5) != (faces[i] == 0 || faces[i] == 5);
     let wrong = plane.mask.data.iter().enumerate().filter(|&p| is_wrong(p)).count() as f64 / faces.len() as f64;
     assert!(wrong <= plane.error && plane.error < 0.1, "{wrong} {}", plane.error);
@@ -374,7 +374,8 @@ fn channels_are_chosen_unless_they_are_given() {
     assert!(iou(&got.mask, is_ceiling) > 0.999);
 }
 
-/// Images of ten channels are deinterleaved by a separate code path; its results must equal those of the general path.
+/// Images of ten channels are deinterleaved by a separate code path; its results must equal the results of the general
+/// path.
 #[test]
 fn a_channel_that_is_not_looked_at_changes_no_bit() {
     let (features, _) = room();

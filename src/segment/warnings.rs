@@ -6,8 +6,9 @@ use crate::image::Image;
 use crate::warning::{Code, Warning, percent};
 use glam::DVec2;
 
-/// A warning is given if the features of more than this share of the mask are unlike those of every stroke. For lamps:
-/// if doubtful regions make up more than this share of the lamps and doubtful regions together. [judged on 38 photos]
+/// A warning is given if the features of more than this share of the mask are unlike the features under every stroke.
+/// For lamps: if doubtful regions make up more than this share of the lamps and doubtful regions together.
+/// [judged on 38 photos]
 const MAX_UNSEEN: f64 = 0.2;
 /// Value of `unseen` above which a pixel counts as unlike every stroke. [convention]
 const UNSEEN: f32 = 0.5;
@@ -218,7 +219,7 @@ pub fn almost_all_lit(lights: &Image, plane: &Image) -> Option<Warning> {
 
 /// Warns if the painted lamps are hardly brighter than the plane. Compares the lamp strokes with two sets: the positive
 /// plane strokes together with the strokes marked "not light", and the "not light" strokes alone. A plane stroke may
-/// cross lamps, whereas "not light" strokes lie beside them. Of the two comparisons, the one in which lamps are
+/// cross lamps, whereas "not light" strokes lie beside them. Of the two comparisons, the comparison in which lamps are
 /// brighter with the greater probability counts (see `brighter`). The first channel of the features is L*.
 pub fn dim_lamps(features: &Image, plane: &[Stroke], lights: &[Stroke]) -> Option<Warning> {
     let lamps: Vec<&Stroke> = lights.iter().filter(|s| s.positive).collect();

@@ -84,7 +84,7 @@ struct Guess {
 
 /// Finds the map from page to photo. Tries every quadruple of candidates as the four corner marks and as the four
 /// midpoint marks, each in four rotations; if one mark is missing, the corners or the midpoints are still complete.
-/// Returns the map under which most marks coincide with candidates; of maps with equal numbers, the one with the
+/// Returns the map under which most marks coincide with candidates; of maps with equal numbers, the map with the
 /// smallest misfit. `None` if no map makes [`MIN_MARKS`] marks coincide.
 fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();

@@ -45,9 +45,9 @@ impl Hyperbola {
 
     /// Fits points `(x, y)` in the unit square, sorted by `x`.
     ///
-    /// The equation `1/y = a - b x` is linear in `a` and `b`. With weights `y⁴`, its squared residuals equal those of
-    /// `y` to first order. Three Gauss-Newton steps on the residuals of `y` follow. Returns `None` if the points do
-    /// not determine both `a` and `b`.
+    /// The equation `1/y = a - b x` is linear in `a` and `b`. With weights `y⁴`, its squared residuals equal the
+    /// squared residuals of `y` to first order. Three Gauss-Newton steps on the residuals of `y` follow. Returns `None`
+    /// if the points do not determine both `a` and `b`.
     pub fn fit(points: &[(f64, f64)]) -> Option<Self> {
         let points = || points.iter().filter(|p| p.1 > 0.0);
         let mut fit = solve(points().map(|&(x, y)| ([y * y, -x * y * y], y)))?;

@@ -39,7 +39,7 @@ const SAMPLES: usize = 4096;
 const MAX_BLOCKS: usize = 1024;
 const MAX_SEARCHES: usize = 256;
 /// A block is left out if its light deviates from the block's mean by more than this, as a weighted root mean square of
-/// channels in `[0, 1]`: its direction may be that of the edge of a shadow. For the normals, the limit is [`SIMILAR`].
+/// channels in `[0, 1]`: its direction may come from the edge of a shadow. For the normals, the limit is [`SIMILAR`].
 /// [bench stylit:directions]
 const MAX_DEVIATION: f32 = 0.05;
 /// Minimum coherence of a block with a clear direction. The coherence is (λ₁ - λ₂) / (λ₁ + λ₂), where λ₁ ≥ λ₂ are the
@@ -65,11 +65,11 @@ pub const NORMALS_WEIGHT: f32 = 1.0;
 /// The directions of the exemplar's strokes, as mean angles in degrees over the blocks that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Directions {
-    /// Mean angle between the strokes of a block and those of all blocks elsewhere with other normals.
+    /// Mean angle between the strokes of a block and the strokes of all blocks elsewhere with other normals.
     pub spread: f64,
-    /// Mean angle between the strokes of a block and those of the blocks that are found by the light alone.
+    /// Mean angle between the strokes of a block and the strokes of the blocks that are found by the light alone.
     pub by_light: f64,
-    /// Mean angle between the strokes of a block and those of the blocks that are found by light and normals.
+    /// Mean angle between the strokes of a block and the strokes of the blocks that are found by light and normals.
     pub by_normals: f64,
     /// Number of blocks that count.
     pub count: usize,
@@ -241,7 +241,7 @@ fn cells(artwork: &Image, cell: usize, job: Job) -> Result<Image> {
 /// modulo π; `None` if the strokes have no clear direction.
 fn angle(cells: &Image, first: [usize; 2], side: usize) -> Option<f32> {
     let at = |x: usize, y: usize| cells.data[y.min(cells.height - 1) * cells.width + x.min(cells.width - 1)];
-    // Compute the covariance of the gradient about its mean: the mean gradient is that of shading, not of strokes.
+    // Compute the covariance of the gradient about its mean: the mean gradient comes from shading, not from strokes.
     let [mut x, mut y, mut xx, mut xy, mut yy] = [0.0f32; 5];
     for (x0, y0) in (first[1]..first[1] + side).flat_map(|y| (first[0]..first[0] + side).map(move |x| (x, y))) {
         let dx = 0.5 * (at(x0 + 1, y0) - at(x0.saturating_sub(1), y0));

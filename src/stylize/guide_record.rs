@@ -79,9 +79,9 @@ impl GuideRecord {
         self.light[patch * n..(patch + 1) * n].copy_from_slice(&other.light[other_patch * n..(other_patch + 1) * n]);
     }
 
-    /// Follows the motion of each pixel into the previous frame. Compares the guides of data at the pixel with those
-    /// within one pixel of the end of the motion; the smallest difference is the error of the pixel. Compares nothing
-    /// if there are no guides of data, or if `motion` has another size than the target.
+    /// Follows the motion of each pixel into the previous frame. Compares the guides of data at the pixel with the
+    /// guides of data within one pixel of the end of the motion; the smallest difference is the error of the pixel.
+    /// Compares nothing if there are no guides of data, or if `motion` has another size than the target.
     pub(super) fn agreement(&self, before: &Self, motion: &Image, job: Job) -> Result<Comparison> {
         let [width, height] = self.size;
         let channels = self.data.len().checked_div(width * height).unwrap_or(0);

@@ -33,7 +33,7 @@ pub struct Lack {
 }
 
 /// The guides of light at the samples of exemplar and target. They are taken before a preview compresses the guides,
-/// which mixes the channels of light with those of data.
+/// which mixes the channels of light with the channels of data.
 pub(super) struct LightSamples {
     codes: Codes,
     /// One pixel per sample of the target, with all channels of the guides.

@@ -109,9 +109,9 @@ pub struct Params {
     /// a different `seed` for each frame; otherwise the same blocks change in every frame. By default all are kept.
     /// \[convention\]
     pub coherence: f32,
-    /// Degree to which the brightness and contrast of the exemplar are adapted to those of the target, in `[0, 1]`, in
-    /// all guides whose range is `Range::Light`. Use it for targets under different light than the exemplar (StyLit,
-    /// Fig. 16). By default they are not adapted. \[convention\]
+    /// Degree to which the exemplar is adapted, in brightness and contrast, to the target, in `[0, 1]`, in all guides
+    /// whose range is `Range::Light`. Use it for targets under different light than the exemplar (StyLit, Fig. 16). By
+    /// default they are not adapted. \[convention\]
     pub match_appearance: f32,
     /// Whether to work at half the resolution, with guides compressed to their principal components: for interactive
     /// painting.

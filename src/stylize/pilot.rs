@@ -55,7 +55,7 @@ impl<'a> PilotRuns<'a> {
     /// other settings run at the middle resolution.
     ///
     /// # Errors
-    /// Those of [`super::run`].
+    /// The errors of [`super::run`].
     pub fn new(
         input: &Input<'a>,
         ladder: &'a [Params],
@@ -112,7 +112,7 @@ impl<'a> PilotRuns<'a> {
     /// Runs the settings with the index `settings` at the highest pilot resolution, unless this was done before.
     ///
     /// # Errors
-    /// Those of [`super::run`].
+    /// The errors of [`super::run`].
     pub fn refine(&mut self, settings: usize, job: Job) -> Result<()> {
         if self.near[settings].is_none() {
             self.near[settings] = Some(self.run(self.tried()[0], settings, job)?);

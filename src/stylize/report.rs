@@ -49,8 +49,8 @@ pub struct Report {
     /// Fig. 17), and 0 where a pixel has no match.
     pub guide_error: Image,
     /// Two channels: for each target pixel, the position in the artwork from which its paint comes, x and y in pixels.
-    /// Of the patches that cover the pixel, the one with the nearest centre determines the position. Both values are -1
-    /// if that patch has no match.
+    /// Of the patches that cover the pixel, the patch with the nearest centre determines the position. Both values are
+    /// -1 if that patch has no match.
     pub sources: Image,
     /// Number of halvings from the target's size to the result's: 1 in preview, else 0.
     pub halvings: usize,

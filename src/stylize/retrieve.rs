@@ -5,7 +5,7 @@
 //! 1. Every exemplar patch searches for its nearest target patch among the free target patches.
 //! 2. The errors of these matches determine a budget.
 //! 3. In order of rising error, the exemplar patches take their targets until the budget is spent. If two exemplar
-//!    patches want the same target, the one with the smaller error takes it (the first, if equal).
+//!    patches want one target, the patch with the smaller error takes it (the first, if equal).
 //!
 //! In the next pass, all exemplar patches are available again for the remaining targets. The passes end when enough of
 //! the target is covered or when a pass gains next to nothing. Then each remaining target patch searches for its

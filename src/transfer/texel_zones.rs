@@ -9,7 +9,7 @@ use crate::scene::surface::Surface;
 use glam::{DVec2, DVec4, UVec2};
 
 /// Finds for each texel whether light is allowed there; returns `None` if light is allowed everywhere. The texture has
-/// `size` texels and covers the bounding rectangle of `surface`, whose axes are those of the rotated pattern. The
+/// `size` texels and covers the bounding rectangle of `surface`, whose axes are the axes of the rotated pattern. The
 /// zones are given along the axes of `untouched`, the surface before the rotation.
 pub(super) fn find(
     scene: &Scene,
@@ -134,8 +134,8 @@ mod tests {
             ..Scene::default()
         };
         let by_name = surface::find(&scene, "Plaster").unwrap();
-        // Select the surface by triangles, including those of the beam: the beam lies in another plane and must be
-        // left out.
+        // Select the surface by triangles, including the triangles of the beam: the beam lies in another plane and must
+        // be left out.
         let listed: Vec<(usize, usize)> = (0..3).flat_map(|mesh| [(mesh, 0), (mesh, 1)]).collect();
         assert_eq!(surface::from_triangles(&scene, &listed).unwrap(), by_name);
         assert_eq!(by_name.triangles, [(0, 0), (0, 1), (1, 0), (1, 1)]);

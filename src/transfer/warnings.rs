@@ -60,8 +60,8 @@ mod tests {
     use glam::{DVec3, Vec3};
     use std::sync::Arc;
 
-    /// Returns the warnings about an image ten columns wide. The mask of the plane covers columns `0..plane`, that of
-    /// the lights `0..lights`.
+    /// Returns the warnings about an image ten columns wide. The mask of the plane covers columns `0..plane`, and the
+    /// mask of the lights covers columns `0..lights`.
     fn codes(plane: usize, lights: usize) -> Vec<(Option<Stage>, Code)> {
         let mask = |columns: usize| {
             let mask = Image::from_fn(10, 4, |x, _| [f32::from(x < columns)]).unwrap();

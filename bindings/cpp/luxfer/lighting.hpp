@@ -185,8 +185,8 @@ inline Result<MeasuredDistribution> measure_distribution(const Scene &scene, Spa
                              MeasuredDistribution{Distribution(scene.context(), made), report});
 }
 
-/// Finds the bodies of the lamps that a mask marks, numbered from the top. If `view` is empty, the camera is that of
-/// `params`. `suspensions` has x and y of the pixels where suspensions meet the ceiling.
+/// Finds the bodies of the lamps that a mask marks, numbered from the top. If `view` is empty, `params` gives the
+/// camera. `suspensions` has x and y of the pixels where suspensions meet the ceiling.
 inline Result<std::vector<luxfer_pendant>> find_pendants(const Context &context, const Image &photo, const Image &mask,
                                                          const Rectify &view = {},
                                                          Span<const std::array<double, 2>> suspensions = {},

@@ -45,7 +45,7 @@ public:
     Result<> set_strokes(const Strokes &strokes) const { return call(luxfer_transfer_set_strokes, strokes.get()); }
 
     /// Sets rectangles of the surface that stay without lamps: u0, v0, u1 and v1 of each, in metres. They replace
-    /// those of earlier calls.
+    /// the rectangles of earlier calls.
     Result<> set_zones(Span<const double> zones) const {
         return call(luxfer_transfer_set_zones, zones.data(), zones.size() / 4);
     }

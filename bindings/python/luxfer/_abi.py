@@ -938,7 +938,7 @@ class luxfer_emission_report(Structure):
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
     quality. A composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its
     sampling_error is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and
-    margin describe the first one."""
+    margin describe the first exemplar."""
 
     _fields_ = [
         ("struct_size", c_uint32),

@@ -103,7 +103,7 @@ class Render(StageBase):
 
     def start_merge(self, paths: Iterable[str | os.PathLike[str]], **params: Unpack[RenderParams]) -> Job[Render]:
         """Starts a job that merges the files of all parts, in any order, into the whole rendering. Scene, camera,
-        layers and settings must equal those of the parts."""
+        layers and settings must equal the scene, camera, layers and settings of the parts."""
         self._call("clear_parts")
         for path in paths:
             self._call("add_part", _params.text(os.fspath(path), "path"))

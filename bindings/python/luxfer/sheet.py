@@ -36,8 +36,8 @@ def align_sheet(
     context: Context, photo: ImageLike, width: int, height: int, **params: Unpack[SheetParams]
 ) -> tuple[Image, SheetReport]:
     """Aligns a photo of a painted sheet: finds the marks and resamples the photo to the printed picture, which had
-    width x height pixels. The settings must be those of the print. Returns the artwork and the quality of the
-    alignment."""
+    width x height pixels. The settings must equal the settings of the print. Returns the artwork and the quality of
+    the alignment."""
     pointer = POINTER(_abi.luxfer_image)()
     settings = _params.fill(_abi.luxfer_sheet_params, params, [])
     report = _abi.luxfer_sheet_report()

@@ -92,9 +92,9 @@ class ExposureSource(IntEnum):
     """Where the exposures of photos come from."""
 
     BOTH = 0
-    """From the metadata and the pixels, weighted by their errors; from one of them where the other is missing.
-    If they contradict each other by more than a third of a stop, luxfer_image_merge_exposures returns
-    Status.INVALID_ARGUMENT."""
+    """From the metadata and the pixels, weighted by their errors; where one of the two sources is missing, from
+    the other source alone. If the two contradict each other by more than a third of a stop,
+    luxfer_image_merge_exposures returns Status.INVALID_ARGUMENT."""
     METADATA = 1
     """From the exposure time, ISO speed and f-number in the files."""
     PIXELS = 2
@@ -126,9 +126,9 @@ class LuminaireShape(IntEnum):
 
     FACES = 0
     """A luminaire shines from the faces of its luminous opening, with the size that its file states: a
-    rectangle, a disc, a box, a cylinder or an ellipsoid. In each direction, all points of the faces have the
-    same luminance: the intensity divided by the projected area of the faces. The light is therefore right at
-    any distance, and renderings show the faces. A luminaire whose file states no size, or a size below 1 mm²,
+    rectangle, a disc, a box, a cylinder or an ellipsoid. In each direction, all points of the faces have equal
+    luminance: the intensity divided by the projected area of the faces. The light is therefore right at any
+    distance, and renderings show the faces. A luminaire whose file states no size, or a size below 1 mm²,
     shines from a point."""
     POINT = 1
     """A luminaire shines from its position as from a point, and is invisible in renderings. The light is right
@@ -178,7 +178,8 @@ class DistributionFormat(IntEnum):
     """A file format of distributions."""
 
     IES = 0
-    """IES LM-63 (.ies), with photometry of type C, or of type B when read."""
+    """IES LM-63 (.ies) with photometry of type C. Files with photometry of type B are converted to type C when
+    they are loaded."""
     LDT = 1
     """EULUMDAT (.ldt)."""
     TM33 = 2
@@ -187,7 +188,7 @@ class DistributionFormat(IntEnum):
     GLDF = 3
     """GLDF container (.gldf): a product with variants, of which one is read."""
     ANY = 4
-    """Any of these formats: the content of the file decides which."""
+    """Any of these formats; the library recognises the format by the content of the file."""
 
 
 class LightKind(IntEnum):
@@ -242,15 +243,16 @@ class RenderImage(IntEnum):
     where a pixel has fewer than two paths."""
     PREVIEW = 4
     """The beauty image after a noise filter that follows the edges of the visible surfaces. The filter averages
-    a pixel with neighbours that differ from it by no more than the noise. A pixel keeps its unfiltered value
-    where this value is estimated to be more accurate, and never moves by more than three standard errors.
-    Details that come from the light alone, such as soft shadows, can be blurred; RenderReport.preview_error
-    estimates the remaining error. The image exists only if RenderParams.preview is not 0."""
+    a pixel with neighbours that differ from it by no more than the noise. A pixel keeps its unfiltered value if
+    this value is estimated to be more accurate than the filtered value. The filter never changes a pixel by
+    more than three standard errors. Details that come from the light alone, such as soft shadows, can be
+    blurred; RenderReport.preview_error estimates the remaining error. The image exists only if
+    RenderParams.preview is not 0."""
     PREVIEW_INTERVAL = 5
     """Half the width of the 95 % interval of each pixel of the preview, in cd/m²; 3 channels. The interval
     includes the bias of the filter. It is infinite where a pixel has fewer than four paths. Measured in rooms
     with 4 to 256 paths per pixel, the intervals contain the true value of 93 % to 98 % of the pixels; along
-    edges of surfaces it is fewer. The image exists only if RenderParams.preview is not 0."""
+    edges of surfaces, they contain it less often. The image exists only if RenderParams.preview is not 0."""
 
 
 class EmitterAs(IntEnum):
@@ -380,8 +382,8 @@ class Subject(IntEnum):
     SURFACE = 1
     """A surface, such as the plane that carries the lamps: each pixel is classified by its features. With the
     ten channels of luxfer_features and without luxfer_segment_set_region, the mask is then restricted to the
-    wall, the floor or the ceiling that the positive strokes lie on. If the strokes lie on more than one of
-    these, only those connected parts of the mask remain that positive strokes touch."""
+    wall, the floor or the ceiling that the positive strokes lie on. If the positive strokes lie on several of
+    these surfaces, the mask keeps only its connected parts that positive strokes touch."""
     LAMPS = 2
     """Lamps: compact regions with a sharp contour, brighter than their surroundings. Each positive stroke marks
     one lamp or more. Regions without a stroke that resemble the marked lamps and lie in the mask of
@@ -411,12 +413,12 @@ class EmissionLaw(IntEnum):
     """In settings only: the law that predicts the lamps of the photo best. The law of EmissionLaw.CORRELATION
     is kept unless another law predicts the lamps clearly better. If EmissionReport.error of the texture then
     exceeds 1, and there is a single exemplar, the other laws are tried, and the texture with the smallest error
-    is kept. The emission has the warning WarningCode.NO_PATTERN even then."""
+    is kept. The emission has the warning WarningCode.NO_PATTERN even if another law gives a better texture."""
     CORRELATION = 1
-    """In settings only: the law follows from the periods in the autocorrelation of the lights:
-    EmissionLaw.LATTICE for two periods, EmissionLaw.ROW for one, and for none EmissionLaw.FREE or, if the
-    exemplar shows few lamps, EmissionLaw.WHOLE. A period counts only if the correlation after a shift by this
-    period is at least the setting min_regularity."""
+    """In settings only: the law follows from the periods in the autocorrelation of the lights. Two periods give
+    EmissionLaw.LATTICE, one period gives EmissionLaw.ROW. Without a period, the law is EmissionLaw.WHOLE if the
+    exemplar shows few lamps or one isolated group of lamps, and otherwise EmissionLaw.FREE. A period counts
+    only if the correlation after a shift by this period is at least the setting min_regularity."""
     LATTICE = 2
     """The lamps form a lattice with two periods."""
     ROW = 3
@@ -444,8 +446,8 @@ class EmissionImage(IntEnum):
     right and down, divided by a length L and clamped to [-1, 1]; both are 1 if no pixel is lit. L is the side
     of a patch, but at most half the longer period if the lights repeat."""
     GUIDES = 3
-    """The guide channels of the texture, at the same reduced resolution: pixels of
-    EmissionImage.EXEMPLAR_GUIDES, copied with the patches that give the texture its colours."""
+    """The guide channels of the texture, at the resolution of EmissionImage.EXEMPLAR_GUIDES: pixels of that
+    image, copied with the patches that give the texture its colours."""
 
 
 class Constraint(IntEnum):
@@ -478,10 +480,10 @@ class Fit(IntEnum):
     """The mean of the light over the target surface should equal the target value."""
     LEAST_SQUARES = 1
     """The sum, over all points of the target surface, of the squared difference between light and target value
-    should be smallest. A gradient descent on the texels of the emission minimises the same sum. Bright points
-    count more, so the emission is dimmer than with Fit.MEAN. Without other light it is dimmer by the factor
-    1/(1+CV²), where CV is the coefficient of variation (standard deviation divided by mean) of the light over
-    the target surface."""
+    should be smallest. A gradient descent on the texels of the emission would minimise this sum too. Bright
+    points count more, so the emission is dimmer than with Fit.MEAN. Without other light it is dimmer by the
+    factor 1/(1+CV²), where CV is the coefficient of variation (standard deviation divided by mean) of the light
+    over the target surface."""
 
 
 class Outcome(IntEnum):
@@ -636,11 +638,12 @@ class WarningCode(IntEnum):
     """Much of the unwarped plane is magnified more than 4 times from the photo; the severity is the share of
     the plane that is magnified so much. The warning points to the point with the largest magnification."""
     PLANE_NEAR_HORIZON = 14
-    """The camera sees the plane nearly edge-on. The severity is the sine of the angle between the plane and the
-    viewing ray, the median over the plane; it is below the limit. The warning points to the point with the
+    """The camera sees the plane nearly edge-on. The severity is the median, over the plane, of the sine of the
+    angle between the plane and the viewing ray; it is below the limit. The warning points to the point with the
     smallest angle."""
     PATTERN_UNCERTAIN = 15
-    """The statistics of the texture differ from those of the photo; the severity is EmissionReport.error."""
+    """The texture and the photo differ in the statistics of their lamps; the severity is
+    EmissionReport.error."""
     FEW_LAMPS = 16
     """The photo shows too few whole lamps for a pattern; the severity is the number of whole lamps, which is
     below the limit."""
@@ -655,8 +658,8 @@ class WarningCode(IntEnum):
     number of these channels."""
     IMPLAUSIBLE_SIZE = 20
     """A scene is so high, so wide or so small that its unit is probably not the metre. The severity is the
-    implausible height or width in metres. For a scene that is too small, it is the larger of the two, and is
-    below the limit. The message names the likely unit."""
+    implausible height or width in metres. For a scene that is too small, it is the larger of height and width,
+    and is below the limit. The message names the likely unit."""
     NOT_RENDERED = 21
     """The file of a scene has a feature or an extension that is not rendered. The message names the feature and
     the first objects that have it; the severity is the number of these objects."""
@@ -684,7 +687,7 @@ class WarningCode(IntEnum):
     NO_COUNTERPART = 27
     """Objects that this frame of a sequence shows are missing in the previous frame, or have other triangles
     there. Their motion is unknown and therefore NaN. The severity is the share of the picture that shows these
-    objects; the message names them. The warning points to a pixel of the largest one."""
+    objects; the message names them. The warning points to a pixel of the largest of these objects."""
     MOTION_DISAGREES = 28
     """The motion of a stylisation contradicts the guides: at the end of a pixel's motion, the previous frame
     shows another surface. If the targets of both frames come from luxfer_stylize_add_guides, the motion is
@@ -699,13 +702,13 @@ class WarningCode(IntEnum):
     severity is the share of such pixels among the pixels to paint; StylizeImage.GUIDE_ERROR shows them. The
     warning points to the place of the target where most of them lie."""
     AMBIGUOUS_PAINT = 30
-    """Places of the exemplar with equal guides are painted in two ways, so a stylisation mixes the two. The
-    severity is the share of the exemplar that such places cover. The warning points to one of them in the
-    artwork."""
+    """Places of the exemplar with equal guides are painted in two ways, which a stylisation mixes. The severity
+    is the share of the exemplar that such places cover. The warning points to one of them in the artwork."""
     BLEMISH = 31
     """A small place of the artwork, such as a stain, is painted unlike all places with similar guides. The
-    severity is the difference in paint between this place and those places, divided by the difference in paint
-    that places with equal guides typically have. The warning points to the place in the artwork."""
+    severity is the difference in paint from this place that all but 5 % of the places with similar guides
+    exceed, divided by the typical difference in paint between places with equal guides. The warning points to
+    the place in the artwork."""
 
 
 class IlluminanceImage(IntEnum):
@@ -739,8 +742,7 @@ class Group(IntEnum):
     BY_TYPE = 5
     """Lamps of about equal area form a group: in the order of their areas, a new group begins where the area
     grows by more than 25 % from one lamp to the next. Among punctual lights, each kind (point, spot,
-    directional) forms one group, and luminaires with the same distribution form one group for each
-    distribution."""
+    directional) forms one group, and all luminaires with one distribution form one group."""
 
 
 class Aim(IntEnum):
@@ -782,7 +784,7 @@ class Known(IntEnum):
     DROP = 1
     """The distance of the first lamp's top below the ceiling; with alike = 0, of every lamp's top."""
     DIAMETER = 2
-    """The largest diameter of the body, which is then the same for all lamps, also with alike = 0."""
+    """The largest diameter of the body. All lamps then have this diameter, also with alike = 0."""
     SPACING = 3
     """The horizontal distance between the axes of the first two lamps; with alike = 0 it determines no size."""
 
@@ -919,8 +921,8 @@ class Demo(IntEnum):
     """A glossy red ball on a white table: the exemplar scene of a stylisation, of which an artist would paint a
     picture."""
     STILL_LIFE = 3
-    """A vase, a ring and two balls, on the same table and under the same lamp as in Demo.SPHERE_ON_TABLE: a
-    target scene for a stylisation."""
+    """A vase, a ring and two balls, on the table and under the lamp of Demo.SPHERE_ON_TABLE: a target scene for
+    a stylisation."""
 
 
 class Artwork(IntEnum):
@@ -1047,7 +1049,7 @@ class View(IntFlag):
     """View, to be combined with |."""
 
     BOTTOM_UP = 1
-    """Flag of a view: the first row in memory is the bottom one."""
+    """Flag of a view: the first row in memory is the bottom row of the image."""
 
 
 class ContextParams(TypedDict, total=False):
@@ -1057,7 +1059,7 @@ class ContextParams(TypedDict, total=False):
     """Number of worker threads, in [0, 1024]; 0, the default: one for each core that the process may use. All
     jobs share these threads. Synchronous calls, which do their work before they return, do not use them, and so
     never wait for a job. A synchronous call runs on the calling thread, or on a set of num_threads other
-    threads that it has to itself. The context keeps up to four idle sets for later calls."""
+    threads, which it shares with no other call. The context keeps up to four idle sets for later calls."""
     memory_budget_mib: int
     """Limit in MiB on the memory of all pixels, meshes and textures that the caller creates in this context; 0,
     the default: no limit. A call that would exceed the limit returns Status.OUT_OF_MEMORY. While a picture file
@@ -1087,8 +1089,8 @@ class ImageView(TypedDict, total=False):
     """Size of the memory at data in bytes; default 0: the caller must set it. Status.INVALID_ARGUMENT if the
     pixels and the strides need more."""
     data: int
-    """The pixels, at any alignment; default None: the caller must set it. Bytes between pixels and rows are
-    never touched."""
+    """The pixels, at any alignment; default None: the caller must set it. The library neither reads nor writes
+    the bytes between pixels or rows."""
 
 
 @dataclass(frozen=True)
@@ -1135,15 +1137,15 @@ class MergeParams(TypedDict, total=False):
     reference: int
     """Index of the reference; -1, the default: the photo with the most pixels that are well exposed."""
     keep_moving: int
-    """What happens where exposures disagree beyond noise, because something moved. 0, the default: only those
-    exposures are averaged that agree with the reference or, where the reference is clipped, with the next
-    shorter exposure that is not clipped. 1: all exposures are averaged."""
+    """Treatment of pixels at which the exposures differ by more than noise explains, because something moved.
+    0, the default: a pixel is averaged only over the exposures that agree with the reference or, where the
+    reference is clipped, with the next shorter exposure that is not clipped. 1: all exposures are averaged."""
     max_shift: float
     """Largest shift between photos that are neighbours in exposure, as a part of the longer side of a photo, in
     [0, 0.25]; default 0.03. 0: the photos are not aligned, as for a camera on a tripod."""
     saturation: float
     """Value in [0.1, 1] from which on a channel counts as clipped; default 0.95. A photo with any value above 2
-    has a high dynamic range and is nowhere clipped."""
+    counts as a photo of high dynamic range, in which no pixel is clipped."""
     exposures: Sequence[float]
     """Exposure of each photo in any unit, such as seconds, in [1e-9, 1e9]; all 0, the default: see the field
     source. Elements beyond the number of photos must be 0."""
@@ -1162,8 +1164,8 @@ class MergeReport:
     """Part of the pixels that are clipped in every photo that shows them, in [0, 1]. Their values come from the
     shortest exposure and are lower bounds."""
     moved: float
-    """Part of the pixels at which neighbouring exposures disagree beyond noise, in [0, 1]; 0 if keep_moving is
-    1."""
+    """Part of the pixels at which neighbouring exposures differ by more than noise explains, in [0, 1]; 0 if
+    keep_moving is 1."""
     exposures: tuple[float, ...]
     """Exposure of each photo divided by the exposure of the reference: a ratio of amounts of light, not of
     stops; above 1 for a photo with more light, 1 for the reference."""
@@ -1185,7 +1187,8 @@ class SceneCounts:
     """Number of objects of each kind in a scene."""
 
     meshes: int
-    """Number of meshes; their indices are 0 to meshes - 1, and likewise for the objects below."""
+    """Number of meshes. Their indices are 0 to meshes - 1; the objects that the fields below count are numbered
+    in this way too."""
     materials: int
     """Number of materials."""
     textures: int
@@ -1370,8 +1373,8 @@ class DistributionReport:
     variants: int
     """Number of variants of the product in a GLDF container; 1 for all other formats."""
     emitters: int
-    """Number of emitters whose distributions were added up: those of the file (TM-33) or of the variant that
-    was read (GLDF); 1 for IES and EULUMDAT."""
+    """Number of emitters whose distributions were added up. For TM-33, it counts the emitters of the file; for
+    GLDF, the emitters of the variant that was read. 1 for IES and EULUMDAT."""
 
 
 class LightParams(TypedDict, total=False):
@@ -1485,7 +1488,7 @@ class MeshInfo:
     has_normals: int
     """1 if each vertex has a normal, 0 if triangles are shaded flat."""
     uv_sets: int
-    """Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second."""
+    """Bit 0 is set if the mesh has the first set of texture coordinates, bit 1 if it has the second set."""
     has_colours: int
     """1 if each vertex has a colour, else 0."""
 
@@ -1557,8 +1560,9 @@ class RenderParams(TypedDict, total=False):
     Default 0: no preview, as for final images. The preview does not change the other images."""
     relative_error: float
     """Stop when RenderReport.relative_error is at most this value, >= 0. With this target, paths go to the
-    pixels where they reduce this error most. Like the eye, this error weighs noise in dark areas as much as in
-    bright ones. Default 0: no target. With several targets, rendering stops when all are reached."""
+    pixels where they reduce this error most. In this error, noise in dark areas counts as much as noise in
+    bright areas, as for the eye. Default 0: no target. With several targets, rendering stops when all targets
+    are reached."""
 
 
 @dataclass(frozen=True)
@@ -1611,8 +1615,8 @@ class RectifyParams(TypedDict, total=False):
     image is smaller if the resolution of the photo does not support this size."""
     max_magnification: float
     """Limit of the magnification by unwarping, a ratio of lengths in (0, 1e6]; default 16. The farther a part
-    of the plane is from the camera, the more its photo pixels are magnified. Parts whose magnification exceeds
-    that of the nearest part by more than this factor are cut off."""
+    of the plane is from the camera, the more its photo pixels are magnified. Parts that are magnified more than
+    this factor times as much as the nearest part are cut off."""
     seed: int
     """Seed of the search; default 1."""
     distortion: float
@@ -1635,8 +1639,8 @@ class RectifyReport:
     vanishing_errors: tuple[float, float, float]
     """Standard deviation of the direction to each vanishing point in camera space, in radians."""
     vanishing_support: tuple[int, int, int]
-    """Number of segments that run to each vanishing point; 0: no segment does, and the point is derived from
-    the others, or from the assumption that the camera is upright."""
+    """Number of segments that run to each vanishing point; 0: no segment runs to the point, which is then
+    derived from the other vanishing points, or from the assumption that the camera is upright."""
     focal_source: FocalSource
     """Source of the focal length: FocalSource."""
     focal: float
@@ -1675,8 +1679,8 @@ class RectifyReport:
     squareness_errors: tuple[float, float, float]
     """Standard deviations of the field squareness; NaN where squareness is NaN."""
     undone: float
-    """The distortion that was undone, in the unit of the field distortion: the one that
-    RectifyParams.distortion sets, else the measured one; 0 if none was undone."""
+    """The distortion that was undone, in the unit of the field distortion; 0 if no distortion was undone. It
+    equals RectifyParams.distortion or, if that is NaN, the measured distortion."""
 
 
 class FeaturesParams(TypedDict, total=False):
@@ -1730,10 +1734,10 @@ class SegmentParams(TypedDict, total=False):
     seed: int
     """Seed of the samples that are drawn; default 1."""
     refine_tolerance: float
-    """Smallest contrast that the refinement by refine_radius follows. Where the standard deviation of the first
-    three channels within one of its windows is below this value, the refinement smooths the mask; where it is
-    above, the mask follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3, 1e6];
-    default 8. No effect if refine_radius is 0."""
+    """Smallest contrast that the refinement by refine_radius follows. In windows in which the standard
+    deviation of the first three channels is below this value, the refinement smooths the mask; in other
+    windows, the mask follows the edges. In the unit of these channels (CIELAB units for colour), in [1e-3,
+    1e6]; default 8. No effect if refine_radius is 0."""
     subject: Subject | str | int
     """Kind of object that the positive strokes mark: Subject; default Subject.AUTO. If the subject is lamps,
     the settings above have no effect."""
@@ -1754,7 +1758,7 @@ class SegmentReport:
     positive_samples: int
     """Number of samples of the positive class."""
     contradictory_pixels: int
-    """Number of pixels that strokes of both classes cover. Each of them belongs to the later stroke."""
+    """Number of pixels that strokes of both classes cover. Such a pixel belongs to the later stroke."""
 
 
 class EmissionParams(TypedDict, total=False):
@@ -1786,9 +1790,10 @@ class EmissionParams(TypedDict, total=False):
     """1, the default: every lamp of the texture stays in one piece; 0: seams between patches may cut lamps."""
     offset: Sequence[float]
     """Offset of the pattern from the texture's top-left corner, in texels to the right and down, each in [-1e6,
-    1e6]; default 0. With EmissionLaw.FREE, the offset shifts all lamps if the texture is tileable and no light
-    is copied patch by patch (luxfer_emission_get_luminaire says which lights are). Otherwise it must be 0, or
-    the job ends with Status.INVALID_ARGUMENT; with whole_lamps = 0 it has no effect."""
+    1e6]; default 0. EmissionLaw.FREE has no lattice that an offset could shift: with this law, an offset other
+    than 0 ends the job with Status.INVALID_ARGUMENT. There are two exceptions. If the texture is tileable and
+    no light is copied patch by patch (luxfer_emission_get_luminaire says which lights are), the offset shifts
+    all lamps. With whole_lamps = 0, the offset has no effect."""
     clip_level: float
     """A channel of the photo counts as clipped if it is at least this value, in [0, 1]; default 0.95. The
     clipped core of a lamp gets the colour of the lamp's rim, at the lowest brightness that is consistent with
@@ -1817,10 +1822,10 @@ class EmissionParams(TypedDict, total=False):
     their lattice. This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives."""
     max_magnification: float
     """Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
-    magnifies distant parts of the plane more than near ones. The magnification of a pixel is a length in the
-    unwarped photo divided by the same length in the photo; the relative magnification is this ratio divided by
-    that of the least magnified pixel of the exemplar. Pixels beyond the limit are left out, as if the photo did
-    not show them."""
+    magnifies distant parts of the plane more than near parts. The magnification of a pixel is its length in the
+    unwarped photo divided by its length in the photo; the relative magnification is the magnification of the
+    pixel divided by the magnification of the least magnified pixel of the exemplar. Pixels beyond the limit are
+    left out, as if the photo did not show them."""
 
 
 @dataclass(frozen=True)
@@ -1828,7 +1833,7 @@ class EmissionReport:
     """Description of a texture: its lamps, the law (rule) by which it continues the exemplar's lights, and its
     quality. A composition (luxfer_emission_start_composition) has no texels yet, so its error is NaN and its
     sampling_error is 0. If there are several exemplars, the fields regularity, law, runner_up, law_score and
-    margin describe the first one."""
+    margin describe the first exemplar."""
 
     luminaires: int
     """Number of luminaires in the texture; see luxfer_emission_get_luminaire."""
@@ -1847,10 +1852,10 @@ class EmissionReport:
     photo contradicts this."""
     sampling_error: float
     """Estimate of the value that the field error takes by chance, because the exemplar shows only a part of its
-    ceiling. It is a root mean square difference: the three statistics of the whole texture are compared with
-    those of parts of the texture that are as large as the exemplar. If error is at most twice this value, it
-    does not indicate a bad texture. 0 for EmissionLaw.WHOLE and EmissionLaw.COPY, for several exemplars, for a
-    composition, and if the texture is too small to hold parts as large as the exemplar at clearly different
+    ceiling. It is the root mean square difference between the three statistics of the whole texture and the
+    statistics of parts of the texture that are as large as the exemplar. If error is at most twice this value,
+    it does not indicate a bad texture. 0 for EmissionLaw.WHOLE and EmissionLaw.COPY, for several exemplars, for
+    a composition, and if the texture is too small to hold parts as large as the exemplar at clearly different
     places."""
     law: EmissionLaw
     """The law (rule) by which the texture continues the lights: EmissionLaw."""
@@ -1864,9 +1869,9 @@ class EmissionReport:
     lights are whole lamps."""
     margin: float
     """law_score minus the score of runner_up; law_score alone if no other law was compared; NaN if law_score is
-    NaN. EmissionLaw.BEST prefers two kinds of laws: the one that EmissionLaw.CORRELATION would choose, and
-    lattices along the axes of the room. If it has kept a preferred law although runner_up scores slightly
-    better, the value is negative."""
+    NaN. EmissionLaw.BEST prefers the law that EmissionLaw.CORRELATION would choose, and lattices along the axes
+    of the room. If it has kept a preferred law although runner_up scores slightly better, the value is
+    negative."""
 
 
 @dataclass(frozen=True)
@@ -1888,8 +1893,8 @@ class Luminaire:
     colour: tuple[float, float, float]
     """Mean linear RGB colour, where 1 is the photo's white."""
     kind: int
-    """Number of the lamp's kind, from 1. Lamps of about equal size and shape, with areas and sides within 25 %,
-    are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp."""
+    """Number of the lamp's kind, from 1. Lamps of about equal size and shape, whose areas and sides differ by
+    at most 25 %, are of one kind; kind 1 has the most lamps. 0 if the border of the texture cuts the lamp."""
 
 
 class RelightParams(TypedDict, total=False):
@@ -2299,13 +2304,13 @@ class PlacementParams(TypedDict, total=False):
     0."""
     starts: int
     """Number of placements that are tried first, in [1, 4096]; default 64. The search then descends from the
-    best of them."""
+    best of these placements."""
     min_offset: Sequence[float]
     """Smallest offset along u and v of the texture, in periods of the texture, in [-16, 16]; default -0.5."""
     max_offset: Sequence[float]
     """Largest offset along u and v, in periods, in [-16, 16]; default 0.5. A range of one period, such as the
-    default, allows every offset. If min_offset and max_offset are equal, the offset is fixed; equal bounds fix
-    scale and rotation likewise."""
+    default, allows every offset. If min_offset and max_offset are equal, the offset is fixed; in the same way,
+    equal bounds fix the scale and the rotation."""
     min_scale: Sequence[float]
     """Smallest number of repetitions of the texture along the surface's u and v, in [1/64, 64]; default 1."""
     max_scale: Sequence[float]
@@ -2384,8 +2389,8 @@ class ObserverGlare:
     ugr: float
     """Unified glare rating: 8 log10(0.25 / background * sum of L² w / p²) over the sources in view, with their
     luminance L in cd/m², solid angle w in steradians and position index p. Below 10, glare is imperceptible; 19
-    is the limit for offices. -infinity if no source is in view; infinity if one is in view and the background
-    is black."""
+    is the limit for offices. -infinity if no source is in view; infinity if a source is in view and the
+    background is black."""
     background: float
     """Luminance of the background in cd/m²: the indirect illuminance at the eye, divided by pi."""
     background_error: float
@@ -2518,8 +2523,8 @@ class PendantsParams(TypedDict, total=False):
     """1, the default: all lamps of the mask have bodies of one shape and size; 0: each lamp has a body of its
     own."""
     level: int
-    """1: all lamps hang at the same height, which requires alike = 1; 0, the default: each lamp hangs at its
-    own height."""
+    """1: all lamps hang at one height, which requires alike = 1; 0, the default: each lamp hangs at its own
+    height."""
     refine: int
     """1, the default: each point of the mask's outline is moved to where the photo's luminance is the mean of
     the luminances inside and outside the lamp. Points where the photo is clipped or has little contrast stay on
@@ -2625,8 +2630,8 @@ class StylizeParams(TypedDict, total=False):
     search: StylizeSearch | str | int
     """Search for nearest patches: StylizeSearch; default StylizeSearch.PATCHMATCH."""
     patch: int
-    """Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if the images are smaller
-    than that."""
+    """Width of a patch in pixels, odd, in [1, 33]; default 5. Patches are smaller if an image is smaller than
+    one patch."""
     guide_weight: float
     """Weight of all guides together, relative to the weight of all colour channels of the artwork together, in
     [0, 1e6]; default 2."""
@@ -2680,8 +2685,8 @@ class StylizeParams(TypedDict, total=False):
     changes from frame to frame ("boils"), as in hand-painted animation, if each frame has its own seed. No
     effect without luxfer_stylize_set_motion."""
     match_appearance: float
-    """Degree to which the brightness and contrast of the exemplar's light guides are adapted to those of the
-    target's light guides, in [0, 1]; 0, the default: not at all."""
+    """Degree to which the exemplar's light guides are adapted, in brightness and contrast, to the target's
+    light guides, in [0, 1]; 0, the default: not at all."""
     seed: int
     """Seed of the search; default 1."""
 
@@ -2716,9 +2721,9 @@ class StylizeReport:
     broken_target: int
     """Number of target pixels with a guide value that is not finite and was taken as 0."""
     unblended_share: float
-    """Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the others are blends
-    of several artwork pixels. StylizeVote.ADAPTIVE gives rough paint a larger share than smooth paint.
-    luxfer_stylize_update leaves this value as the last full run has set it."""
+    """Share of the painted pixels that are unchanged copies of artwork pixels, in [0, 1]; the other painted
+    pixels are blends of several artwork pixels. StylizeVote.ADAPTIVE gives rough paint a larger share than
+    smooth paint. luxfer_stylize_update leaves this value as the last full run has set it."""
     normals_weight: float
     """Weight of the normals as a guide, where each guide of light has 1; 0: the normals are not used. Unless
     the caller has given this weight, it is above 0 only if the strokes of the artwork follow the shapes; see

@@ -16,7 +16,7 @@ const MIN_CUT_SHARE: f64 = 0.1;
 
 /// The lamps of an exemplar. Each list is in descending order of the number of photo pixels that show the lamp.
 pub struct Evidence {
-    /// The whole lamps: those that the photo shows completely, or that count as whole ([`Role::is_whole`]).
+    /// The whole lamps: lamps that the photo shows completely, and lamps that count as whole ([`Role::is_whole`]).
     pub whole: Vec<MeasuredLamp>,
     /// The lamps that the border cuts and whose size is known. `centre` is the centre of the whole lamp; `weight` is
     /// the number of photo pixels of the visible part. Always empty for a luminous ceiling, because it is not known at

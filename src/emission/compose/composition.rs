@@ -175,7 +175,7 @@ impl Composition {
         render::run(&blend, &sources, &self.bands, tile, lights, job)
     }
 
-    /// Checks that the number and the sizes of the exemplars are those of which the composition was made.
+    /// Checks that the exemplars agree in number and sizes with the exemplars of which the composition was made.
     pub(in crate::emission) fn check_exemplars(&self, input: &Input, styles: &[Style]) -> Result<()> {
         if styles.len() + 1 != self.layers.len() {
             let (given, expected) = (styles.len() + 1, self.layers.len());

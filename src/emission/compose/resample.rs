@@ -27,7 +27,7 @@ const MAX_POINTS: f64 = 32.0;
 /// pixels long, a smaller copy of the photo is read instead of the photo. [bench emission:recovery]
 const MIN_PIXELS: f64 = 8.0;
 
-/// The photo and its smaller copies, each with half the width and height of the one before.
+/// The photo and its smaller copies, each with half the width and height of the copy before.
 #[derive(Clone, Copy)]
 pub struct Levels<'a> {
     pub photo: &'a Image,

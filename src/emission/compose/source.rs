@@ -173,7 +173,7 @@ impl TexelSource<'_> {
     }
 
     /// The mean colour of the light over a square with the centre `p`, from the photo. Where the photo does not show
-    /// the square, the unwarped image is interpolated at `p` instead, between those pixels of `taps` whose label
+    /// the square, the unwarped image is interpolated at `p` instead, between the pixels of `taps` whose label
     /// `is_shown` selects. `lamp` is the label of the component at `p`, whose clipped colours are replaced.
     fn colour(
         &self,

@@ -32,8 +32,8 @@ impl TexelZone {
         margin: Option<f64>,
         job: Job,
     ) -> Result<Vec<Self>> {
-        // Mark the texels where no lamp may be: those in zones and, if lamps must keep a margin, those off the surface.
-        // Then dilate the marked texels by the margin.
+        // Mark the texels where no lamp may be: texels in zones and, if lamps must keep a margin, texels off the
+        // surface. Then dilate the marked texels by the margin.
         let (width, height) = (size.x as usize, size.y as usize);
         let mut blocked = Image::new(width, height, 1)?;
         for (i, out) in blocked.data.iter_mut().enumerate() {

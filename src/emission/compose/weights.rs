@@ -8,7 +8,7 @@ use glam::DVec2;
 /// Tolerance for rounding: the sum of the weights may exceed 1 by this amount. [rounding]
 const ROUNDING: f32 = 1e-4;
 
-/// A further exemplar, and the weight map by which its lights replace those of the first exemplar.
+/// A further exemplar, and the weight map by which its lights replace the lights of the first exemplar.
 #[derive(Clone, Copy)]
 pub struct Style<'a> {
     pub input: Input<'a>,

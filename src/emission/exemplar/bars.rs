@@ -294,7 +294,7 @@ pub struct Section {
     sharpness: f64,
 }
 
-/// The lowest sharpness of those sections in which the bar is clearly visible, that is, in which its depth is at least
+/// The lowest sharpness of the sections in which the bar is clearly visible, that is, in which its depth is at least
 /// half of the whole bar's depth. Infinite if there is no such section.
 pub fn lowest_sharpness(bar: &Bar, sections: &[Section]) -> f64 {
     let evident = sections.iter().filter(|s| s.depth >= bar.depth / 2.0);

@@ -38,7 +38,7 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
     lamps.sort_by(|a, b| b.weight.total_cmp(&a.weight));
     let total: f64 = lamps.iter().map(|l| l.weight).sum();
 
-    // Of the major kinds (those with a large share of the lamps' photo pixels), find the one with the smallest lamps.
+    // Of the major kinds (kinds with a large share of the lamps' photo pixels), find the kind with the smallest lamps.
     let kinds = MeasuredLamp::kinds(&lamps, MeasuredLamp::is_like);
     let is_major = |kind: &&Vec<MeasuredLamp>| kind.iter().map(|l| l.weight).sum::<f64>() >= MIN_KIND_SHARE * total;
     let smallest = kinds.iter().filter(is_major).map(|kind| kind[0]).min_by(|a, b| {

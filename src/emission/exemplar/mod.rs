@@ -132,7 +132,7 @@ impl Exemplar {
         [low, lights.iter().fold([0; 2], |high, light| corners(high, light.max, usize::max))]
     }
 
-    /// The whole lamps: those that the photo shows completely, or that count as whole ([`Role::is_whole`]).
+    /// The whole lamps: lamps that the photo shows completely, and lamps that count as whole ([`Role::is_whole`]).
     pub fn lamps(&self) -> impl Iterator<Item = &Component> {
         self.components.list.iter().zip(&self.roles).filter(|(_, role)| role.is_whole()).map(|(c, _)| c)
     }

@@ -84,7 +84,7 @@ impl Design {
         let half = self.size / 2.0;
         match self.shape {
             // Exact if the rectangle's axis is parallel to x or y. Otherwise an approximation: the square is rotated
-            // about its centre until its sides are parallel to those of the rectangle.
+            // about its centre until its sides are parallel to the sides of the rectangle.
             Shape::Rectangle => {
                 let along = |q: f64, half: f64| {
                     let (low, high) = ((q - side / 2.0).max(-half), (q + side / 2.0).min(half));

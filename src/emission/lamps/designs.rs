@@ -25,8 +25,8 @@ use crate::emission::exemplar::roles::Role;
 use glam::DVec2;
 
 /// An ellipse is chosen only if its length is at most `MAX_ELLIPSE` times its width; longer shapes are tubes with round
-/// ends. Its agreement with the lamps ([`MIN_AGREEMENT`]) must exceed that of a rectangle by `MIN_ELLIPSE_GAIN`,
-/// because blur rounds the corners of rectangles. [judged on 20 photos]
+/// ends. Its agreement with the lamps ([`MIN_AGREEMENT`]) must exceed the agreement of a rectangle by
+/// `MIN_ELLIPSE_GAIN`, because blur rounds the corners of rectangles. [judged on 20 photos]
 const MAX_ELLIPSE: f64 = 2.5;
 const MIN_ELLIPSE_GAIN: f64 = 0.03;
 /// A kind of lamps gets a design only if the mean agreement of its lamps with the shape is at least this. A lamp is
@@ -107,7 +107,7 @@ fn disc(diameter: f64) -> Design {
     Design { shape: Shape::Ellipse, size: DVec2::splat(diameter), axis: DVec2::X }
 }
 
-/// The lamps by which the design of their kind is judged: those that the photo shows completely, or else all.
+/// The lamps by which the design of their kind is judged: the lamps that the photo shows completely, or else all lamps.
 fn judges(members: &[Member]) -> Vec<&Member> {
     let clear: Vec<&Member> = members.iter().filter(|m| m.is_clear).collect();
     if clear.is_empty() { members.iter().collect() } else { clear }

@@ -31,7 +31,8 @@ fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
 ///
 /// Unwarping projects a body that hangs below the plane, and its glare, away from one point: the foot of the
 /// perpendicular from the camera to the plane. It also stretches photo pixels away from this point. So the long axis of
-/// a protruding lamp is parallel to that of a photo pixel there. The lower the lamp hangs, the longer it looks.
+/// a protruding lamp is parallel to the long axis of a photo pixel there. The lower the lamp hangs, the longer it
+/// looks.
 ///
 /// - A kind protrudes if blur may have elongated each of its lamps ([`is_smeared`]), with an angle of at most
 ///   [`MAX_ALIGNED_ANGLE`] between the two long axes.
@@ -104,8 +105,8 @@ fn double_angle(lamp: &Member) -> DVec2 {
 ///
 /// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. At least
 /// [`MIN_BLOOM_LAMPS`] round lamps are discs if bloom explains their long and short sides ([`BloomFit::shown`]).
-/// Otherwise, lamps are discs if those elongated along their blur have at least half of the photo pixels of all lamps,
-/// and if one of these conditions holds as well:
+/// Otherwise, lamps are discs if the lamps that are elongated along their blur have at least half of the photo pixels
+/// of all lamps, and if one of these conditions holds as well:
 ///
 /// - They are round. Lamps are rarely oval, but a disc looks oval if it blooms, or if its cover protrudes from the
 ///   ceiling.

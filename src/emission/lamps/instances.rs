@@ -142,9 +142,9 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
         let (low, high) = if wraps { (DVec2::ZERO, size) } else { (-last, size - first) };
         for [i, j] in cells::between(inverse, low - offset, high - offset) {
             let shift = offset + a * i as f64 + b * j as f64;
-            // In a tileable texture, a repetition that begins on the right or lower border equals the one that begins
-            // on the left or upper border. Both test limits are lowered by a slack, so that rounding cannot count such
-            // a repetition twice or not at all.
+            // In a tileable texture, a repetition that begins on the right or lower border equals the repetition that
+            // begins on the left or upper border. Both test limits are lowered by a slack, so that rounding cannot
+            // count such a repetition twice or not at all.
             let slack = if wraps { DVec2::splat(1e-6) } else { DVec2::ZERO };
             if shift.cmpge(low - slack).all() && shift.cmplt(high - slack).all() {
                 instances.push(Instance { component, shift });

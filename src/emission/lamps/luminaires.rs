@@ -16,8 +16,8 @@ pub fn components(mask: &Image) -> Result<Components> {
     components::find(mask.width, mask.height, |i| mask.data[i] >= 0.5)
 }
 
-/// Measures each component in `found`, the connected lights of `texture`, and returns it as a luminaire. The order is
-/// that of `found`.
+/// Measures each component in `found`, the connected lights of `texture`, and returns it as a luminaire. The luminaires
+/// have the order of `found`.
 pub fn find(texture: &Image, found: &Components, coverage: Coverage, job: Job) -> Result<Vec<Luminaire>> {
     let lights = LampCoverage::new(found, coverage, texture.width, texture.height)?;
     let lamps: Result<Vec<Luminaire>> = (1..)

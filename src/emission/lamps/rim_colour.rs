@@ -37,9 +37,9 @@ pub struct RimColours {
 }
 
 impl RimColours {
-    /// Reads the colour of each lamp from those pixels of its rim that `shown` marks. Channel values of at least
-    /// `level` count as clipped. Returns `None` if nothing is clipped: if `level` is 0, if no lit pixel reaches
-    /// `level`, or if a lit pixel exceeds `MAX_CLIPPED`.
+    /// Reads the colour of each lamp from the pixels of its rim that `shown` marks. Channel values of at least `level`
+    /// count as clipped. Returns `None` if nothing is clipped: if `level` is 0, if no lit pixel reaches `level`, or if
+    /// a lit pixel exceeds `MAX_CLIPPED`.
     pub fn find(image: &Image, shown: &[bool], components: &Components, level: f32) -> Option<Self> {
         let colour = |i: usize| image.rgb(i % image.width, i / image.width);
         let lit = || components.labels.iter().enumerate().filter(|(_, label)| **label != 0);
@@ -69,9 +69,9 @@ impl RimColours {
         Some(Self { level, colours: sums[1..].iter().map(|&sum| of(sum).or(all)).collect() })
     }
 
-    /// Replaces the clipped channels of `value`, a pixel of a component, by those of the rim's colour times a factor.
-    /// The factor is the smallest for which no channel of the product is below `value`. Returns `value` if no channel
-    /// is clipped, or if the component has no colour.
+    /// Replaces the clipped channels of `value`, a pixel of a component, by the channels of the rim's colour times a
+    /// factor. The factor is the smallest for which no channel of the product is below `value`. Returns `value` if no
+    /// channel is clipped, or if the component has no colour.
     pub fn undo(&self, component: usize, value: Vec3) -> Vec3 {
         let clipped = value.cmpge(Vec3::splat(self.level));
         match self.colours.get(component).copied().flatten() {

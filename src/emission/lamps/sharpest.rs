@@ -1,5 +1,5 @@
-//! Replaces lamps that few photo pixels show by similar lamps that many photo pixels show: these are sharper. Lamps
-//! that are partly hidden by something in front of them are replaced by similar lamps in full view.
+//! Replaces lamps that few photo pixels show by similar lamps that many photo pixels show, and that are therefore
+//! sharper. Lamps that are partly hidden by something in front of them are replaced by similar lamps in full view.
 
 use super::designs::Designs;
 use super::instance::Instance;
@@ -28,9 +28,9 @@ const MIN_SHARP_SHARE: f64 = 0.4;
 const MAX_OBSTRUCTED: f64 = 0.05;
 
 /// Replaces each lamp that is not sharp, or that the photo does not show completely, by a similar lamp that is sharp
-/// and whole. The new lamp gets the centre of the lamp that it replaces. If there are several sharp and whole lamps,
-/// one is chosen at random for each instance, so that the texture shows all of them. If there is none, the lamp is not
-/// replaced.
+/// and whole. The new lamp gets the centre of the lamp that it replaces. If there are several such lamps, one is chosen
+/// at random for each instance, so that the texture shows all of them. If the exemplar has no such lamp, the lamp is
+/// not replaced.
 pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64) {
     let lamps = &exemplar.components.list;
     let sharp = |k: usize| -> Vec<usize> {
@@ -56,14 +56,14 @@ pub fn show_sharpest(exemplar: &Exemplar, instances: &mut [Instance], seed: u64)
     }
 }
 
-/// Returns those of the given lamps, which are similar, that are sharp ([`MIN_SHARP_SHARE`]).
+/// Returns the sharp lamps ([`MIN_SHARP_SHARE`]) among the given similar lamps.
 fn sharpest(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
     let max_area = lamps.iter().map(|&k| exemplar.photo_area[k]).fold(0.0, f64::max);
     lamps.retain(|&k| exemplar.photo_area[k] >= MIN_SHARP_SHARE * max_area);
     lamps
 }
 
-/// Returns those of the given lamps, which are of one kind, that are not obstructed ([`MAX_OBSTRUCTED`]).
+/// Returns the lamps that are not obstructed ([`MAX_OBSTRUCTED`]) among the given lamps of one kind.
 fn unobstructed(exemplar: &Exemplar, mut lamps: Vec<usize>) -> Vec<usize> {
     let min_dark = lamps.iter().map(|&k| exemplar.dark_share[k]).fold(f64::INFINITY, f64::min);
     lamps.retain(|&k| exemplar.dark_share[k] <= min_dark + MAX_OBSTRUCTED);

@@ -41,9 +41,9 @@ fn frame(component: usize, exemplar: &Exemplar, designs: &Designs) -> Frame {
     }
 }
 
-/// Returns the instances without those that are too close to an earlier instance that is kept. The minimum gap is
-/// [`MIN_GAP_SHARE`] times the smallest gap between two whole lamps of the exemplar. If whole lamps touch, or if there
-/// are fewer than two, returns all instances.
+/// Leaves out each instance that is too close to an earlier instance that is kept, and returns the other instances. The
+/// minimum gap is [`MIN_GAP_SHARE`] times the smallest gap between two whole lamps of the exemplar. If whole lamps
+/// touch, or if there are fewer than two, returns all instances.
 pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, instances: Vec<Instance>) -> Vec<Instance> {
     let frames: Vec<Frame> = (0..exemplar.roles.len()).map(|k| frame(k, exemplar, designs)).collect();
     let whole: Vec<Frame> = (0..frames.len()).filter(|&k| exemplar.roles[k].is_whole()).map(|k| frames[k]).collect();

@@ -41,7 +41,7 @@ pub fn place(
     let step = |[i, j]: Cell| DVec2::new(i as f64, j as f64);
 
     // Collect the lamps of each cell in `lamps`, and the complete cells in `whole`. A cell is complete if it has no cut
-    // lamp, and if the photo would show all of the first lamp (that of cell (0, 0)) at the centre of the cell.
+    // lamp, and if the photo would show all of the first lamp (the lamp of cell (0, 0)) at the centre of the cell.
     let mut lamps: BTreeMap<Cell, Vec<usize>> = BTreeMap::new();
     exemplar.pieces().for_each(|(k, lamp)| lamps.entry(cell_of(lamp.centre)).or_default().push(k));
     let components = exemplar.components.list.iter().zip(&exemplar.roles);

@@ -34,8 +34,8 @@ impl Bounds {
 /// The shift, in unwarped pixels, that centres a lattice in a texture of `size` unwarped pixels. Four shifts are
 /// compared. They move one of these points to the texture's centre: a lamp, the midpoint between two lamps that are one
 /// period apart (for each period), or the midpoint between four lamps around a cell. The shift is chosen for which the
-/// border cuts the fewest lamps; among equals, the one that keeps the other lamps farthest from the border. With more
-/// than [`MAX_CELLS`] cells, a lamp moves to the centre without comparison. `None` if the law has no lattice.
+/// border cuts the fewest lamps; among equal shifts, the shift that keeps the other lamps farthest from the border.
+/// With more than [`MAX_CELLS`] cells, a lamp moves to the centre without comparison. `None` if the law has no lattice.
 pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     let [a, b] = law.lattice()?;
     let motif = motif(exemplar, law);

@@ -107,7 +107,7 @@ impl Autocorrelation {
 }
 
 /// The correlation coefficient of `n` pairs of values. `mm` is the sum of the products. `m1` and `s1` are the sum and
-/// the sum of squares of the first values; `m2` and `s2` are those of the second values.
+/// the sum of squares of the first values; `m2` and `s2` are the sums of the second values.
 fn coefficient(n: f64, mm: f64, [m1, s1]: [f64; 2], [m2, s2]: [f64; 2]) -> f32 {
     let (var1, var2) = (s1 - m1 * m1 / n, s2 - m2 * m2 / n);
     let min_variance = 1e-9 * n;

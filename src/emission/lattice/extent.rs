@@ -13,13 +13,13 @@ const CELL_GAP: f64 = 4.0;
 
 /// An exemplar without a period repeats as a whole if it has fewer lamps than this, so that rows of unlike lamps stay
 /// rows. With more lamps, patches are placed without a lattice. Patches also show the lamps that the border cuts, which
-/// a repetition leaves out; so the lit share is closer to that of the exemplar. But patches need enough lamps that the
-/// border does not cut. [judged on 15 photos]
+/// a repetition leaves out; so the lit share is closer to the lit share of the exemplar. But patches need enough lamps
+/// that the border does not cut. [judged on 15 photos]
 const FEW_LAMPS: usize = 16;
 
 /// All lamps form one isolated group if the free space around them is large compared with the distances between them.
-/// The free space along an axis is the extent of the exemplar minus that of the box around all lamps. Along both axes,
-/// it must exceed this factor times d, where d is the largest distance from a lamp to its nearest neighbour.
+/// The free space along an axis is the extent of the exemplar minus the extent of the box around all lamps. Along both
+/// axes, it must exceed this factor times d, where d is the largest distance from a lamp to its nearest neighbour.
 /// [judged on 5 photos]
 const GROUP_MARGIN: f64 = 2.5;
 
@@ -64,9 +64,9 @@ fn to_like_column(exemplar: &Exemplar, axis: usize) -> Option<f64> {
     (takes_its_place && has_whole(first) && has_whole(last)).then(|| centre(last) - centre(first))
 }
 
-/// Returns two lengths along an axis (0 for x, 1 for y), in unwarped pixels: that of the box around all `lamps`, and
-/// that of a gap between lamps. A gap is an interval of the axis that no lamp reaches into. If there are several,
-/// `choose` picks the longest or the shortest one. If there is none, the length of the gap is 0.
+/// Returns two lengths along an axis (0 for x, 1 for y), in unwarped pixels: the length of the box around all `lamps`,
+/// and the length of a gap between lamps. A gap is an interval of the axis that no lamp reaches into. If there are
+/// several, `choose` picks the longest or the shortest one. If there is none, the length of the gap is 0.
 fn spread<'a>(lamps: impl Iterator<Item = &'a Component>, axis: usize, choose: fn(usize, usize) -> usize) -> [f64; 2] {
     let taken = intervals(lamps, axis);
     let gap = taken.windows(2).map(|pair| pair[1][0] - pair[0][1]).reduce(choose);
@@ -120,8 +120,8 @@ pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
 /// The periods along x and along y with which an exemplar repeats as a whole, in unwarped pixels. The texture should
 /// have the same lit share as the visible part of the plane. So the area of a repetition is the area of the lights that
 /// it copies, divided by the lit share, but at most the area of `extent`. It is smaller than `extent` if some corners
-/// of the exemplar are not visible, or if cut lamps are left out. If neither is the case, the periods are those of
-/// [`of_rows`]. No period is shorter than [`min_cell`], so that the lamps of adjacent repetitions stay apart.
+/// of the exemplar are not visible, or if cut lamps are left out. If neither is the case, [`of_rows`] gives the
+/// periods. No period is shorter than [`min_cell`], so that the lamps of adjacent repetitions stay apart.
 ///
 /// A single lamp in a photo shows no spacing, so both its periods have the same length. The exceptions: [`min_cell`] is
 /// longer along one axis, or does not fit into `extent`.
@@ -172,10 +172,10 @@ fn is_group(exemplar: &Exemplar, extent: DVec2) -> bool {
     farthest.is_finite() && (extent - (high - low)).min_element() > GROUP_MARGIN * farthest
 }
 
-/// The period with which a row of lamps repeats as a whole: a vector along `period`, which leads from lamp to lamp. Its
-/// length is that of the exemplar along the row, including the free space at both ends, rounded to a multiple of
-/// `period`. `None` if the exemplar is shorter than half a period, or if the row may continue beyond the view at one of
-/// its ends. An end is in view if:
+/// The period with which a row of lamps repeats as a whole: a vector along `period`, which leads from lamp to lamp. It
+/// is as long as the exemplar along the row, including the free space at both ends, rounded to a multiple of `period`.
+/// `None` if the exemplar is shorter than half a period, or if the row may continue beyond the view at one of its ends.
+/// An end is in view if:
 ///
 /// - the exemplar extends beyond the place where the next lamp would begin, and
 /// - the photo, if there is one, shows the place where the centre of the next lamp would lie.

@@ -7,9 +7,9 @@
 //!
 //! - If there is only one such shift, the lamps form a row. The second period leads across the row; its length follows
 //!   from the extent of the exemplar.
-//! - If there is none, and there are only a few lamps or one isolated group of lamps, the exemplar repeats as a whole.
-//!   The periods then follow from its width and its height.
-//! - If there is none, but there are many lamps, patches are placed without a lattice.
+//! - If no shift maps the mask onto itself, and there are only a few lamps or one isolated group of lamps, the exemplar
+//!   repeats as a whole. The periods then follow from its width and its height.
+//! - If no shift maps the mask onto itself, but there are many lamps, patches are placed without a lattice.
 
 pub mod basis;
 pub mod border_sites;
@@ -153,7 +153,7 @@ impl Correlated {
 }
 
 /// At most two shifts, in unwarped pixels, that map the pattern of lights onto itself, with their correlations: the
-/// shortest one, and the shortest of those that are not parallel to it.
+/// shortest shift, and the shortest of the shifts that are not parallel to it.
 fn periods(exemplar: &Exemplar, correlated: &Correlated, min_regularity: f32) -> Vec<(DVec2, f64)> {
     let mut periods: Vec<(DVec2, f64)> = Vec::new();
     for (shift, value) in shifts(exemplar, correlated, min_regularity, MIN_RELATIVE_CORRELATION, usize::MAX) {

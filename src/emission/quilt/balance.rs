@@ -59,8 +59,8 @@ impl Balance {
     }
 
     /// Passes the excess of the current block on to its neighbours, and makes the next block the current one. The
-    /// weights are those of Floyd and Steinberg: 7/16 to the right, 3/16, 5/16 and 1/16 below. At the sides of the
-    /// texture, the weights of missing neighbours are added to that of the block below, so that no excess is lost.
+    /// weights follow Floyd and Steinberg: 7/16 to the right, 3/16, 5/16 and 1/16 below. At the sides of the texture,
+    /// the weights of missing neighbours are added to the weight of the block below, so that no excess is lost.
     pub fn pass_on(&mut self) {
         let (column, excess) = (self.column, self.row[self.column] / 16.0);
         let (has_left, has_right) = (column > 0, column + 1 < self.row.len());

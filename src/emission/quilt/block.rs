@@ -23,7 +23,7 @@ pub struct Run {
     pub source: usize,
 }
 
-/// A block of the texture. `empty` and `filled` list its pixels as runs: those without a patch, and those that show
+/// A block of the texture. `empty` and `filled` list its pixels as runs: pixels without a patch, and pixels that show
 /// pixels of the exemplar.
 pub struct Block {
     pub rect: Rect,

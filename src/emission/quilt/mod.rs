@@ -4,7 +4,7 @@
 //! A patch is a shift of the exemplar: position in the texture minus position in the exemplar. The texture is filled
 //! block by block, row by row:
 //!
-//! 1. Of the shifts that cover most of the block, keep those that agree best with the pixels already placed.
+//! 1. Of the shifts that cover most of the block, keep the shifts that agree best with the pixels already placed.
 //! 2. Choose one of them at random.
 //! 3. If pixels remain empty, because the photo does not show their source, fill them by further patches.
 //!
@@ -197,8 +197,8 @@ impl Quilt<'_> {
     }
 
     /// The distinct shifts around three corners of a block: upper left, upper right and lower left. At each corner,
-    /// these are the shift of the block's corner pixel and that of the pixel one column to the left and one row above
-    /// it. Pixels without a patch give no shift.
+    /// these are the shift of the block's corner pixel and the shift of the pixel one column to the left and one row
+    /// above it. Pixels without a patch give no shift.
     fn neighbours(&self, rect: &Rect) -> Vec<Shift> {
         let mut shifts: Vec<Shift> = Vec::new();
         let mut neighbour = |x: usize, y: usize| {
@@ -268,10 +268,10 @@ impl Quilt<'_> {
             .collect()
     }
 
-    /// Chooses at random among the shifts that are equally good: those whose error exceeds the lowest error by no more
-    /// than the tolerance ([`Comparison::equally_good`]). The law [`Law::Row`] is the exception. Its first block takes
-    /// the shift nearest to `offset`. Each later block keeps the shift of a neighbouring patch if this shift is equally
-    /// good. `None` if there is no shift to choose from.
+    /// Chooses at random among the equally good shifts, whose error exceeds the lowest error by no more than the
+    /// tolerance ([`Comparison::equally_good`]). The law [`Law::Row`] is the exception. Its first block takes the shift
+    /// nearest to `offset`. Each later block keeps the shift of a neighbouring patch if this shift is equally good.
+    /// `None` if there is no shift to choose from.
     fn choose(&self, block: &Block, scored: &[Scored]) -> Option<Scored> {
         let rect = &block.rect;
         if matches!(self.law, Law::Row(_)) && self.patch_map.shifts.is_empty() {

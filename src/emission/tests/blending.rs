@@ -1,5 +1,5 @@
 //! Tests of blending two exemplars: the shares of lamps and light follow the weights, and with a weight of 0 or 1 the
-//! texture has the same bits as that of one exemplar alone.
+//! texture equals, to the bit, the texture of one exemplar alone.
 
 use super::*;
 

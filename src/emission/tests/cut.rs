@@ -86,7 +86,7 @@ fn a_single_lamp_repeats_at_equal_distances_along_both_axes() {
 }
 
 /// Each window consists of 2 × 2 panes. Bars of 4 pixels separate the panes of a window, and bars of 20 pixels separate
-/// the windows. The lattice must have the period of the windows, not that of the panes.
+/// the windows. The lattice must have the period of the windows, not the period of the panes.
 #[test]
 fn windows_of_panes_keep_the_wide_bars_between_them() {
     let is_lit = |n: f64| {

@@ -97,8 +97,8 @@ fn a_composition_lists_the_lamps_that_its_texture_shows() {
             }
             let (off, perimeter) = (same.centre.distance(lamp.centre), 2.0 * lamp.size.element_sum());
             assert!(off < 1.0 && (same.area - lamp.area).abs() < 0.6 * perimeter, "{params:?} {same:?} {lamp:?}");
-            // Do not compare the size of a lamp that the border cuts. In the composition's list (`same`), its size is
-            // that of the complete lamp. In the finished texture (`lamp`), it is that of the visible part.
+            // Do not compare the size of a lamp that the border cuts. In the composition's list (`same`), it has the
+            // size of the complete lamp. In the finished texture (`lamp`), it has the size of the visible part.
             let size_off = (same.size - lamp.size).abs().max_element();
             assert!(!is_inside || size_off < 2.5, "{} {}", same.size, lamp.size);
             assert!(!is_inside || (same.kind, lamp.kind) == (1, 1), "{} {}", same.kind, lamp.kind);

@@ -47,7 +47,7 @@ fn lamps_on_a_lattice_vary_as_in_the_exemplar() {
     // The mean and the standard deviation of the brightness must agree with the exemplar. Patches copy groups of lamps,
     // so both are only as precise as in a random sample of 100 lamps, the number of the exemplar. Allow three standard
     // errors of such a sample. The levels are uniformly distributed, for which the standard error of the deviation is
-    // about half that of the mean.
+    // about half the standard error of the mean.
     let (mean, spread) = deviation(&sources.iter().map(|&k| known[k]).collect::<Vec<_>>());
     let (expected, exact) = deviation(&known);
     let standard = exact / (known.len() as f64).sqrt();

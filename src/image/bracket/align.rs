@@ -104,7 +104,7 @@ fn shift_between(from: &[Image], to: &[Image], max_shift: isize, job: Job) -> Re
     Ok(if part(best.1) < part(unmoved) - chance { best.0 } else { [0; 2] })
 }
 
-/// A shift, with two numbers of pixels: those that differ under this shift, and those that were compared.
+/// A shift, with two numbers of pixels: pixels that differ under this shift, and pixels that were compared.
 type Counted = ([isize; 2], [usize; 2]);
 
 /// Counts the differing pixels for no shift, for the shifts `around`, and for the eight neighbours of each of them.

@@ -23,7 +23,7 @@ const FADE: f32 = 0.8;
 /// sRGB near black adds as much again. [convention]
 const BLACK: f32 = 1e-3;
 
-/// A photo, with its exposure relative to that of the reference photo.
+/// A photo, with its exposure relative to the exposure of the reference photo.
 pub struct Exposed<'a> {
     pub frame: Frame<'a>,
     pub exposure: f32,

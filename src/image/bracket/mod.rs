@@ -7,8 +7,8 @@
 //! exposures that agree. The result has the pixel grid and the scale of one photo, the reference. Pixels that the
 //! reference shows well keep their values; pixels that it clips get the larger values that shorter exposures show.
 //!
-//! Not modelled: tone curves other than that of sRGB (the photos must be linear after loading), rotations and parallax
-//! between the photos, and lens flare, which differs between exposures only if the light does.
+//! Not modelled: tone curves other than the sRGB curve (the photos must be linear after loading), rotations and
+//! parallax between the photos, and lens flare, which differs between exposures only if the light does.
 
 mod align;
 mod combine;

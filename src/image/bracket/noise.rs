@@ -15,9 +15,9 @@ const MIN_PIXELS: usize = 32;
 
 /// Limits of the measured median difference (`MAX_DEVIATION`) and of its standard deviation, as shares of the light.
 /// Without limits, a moving object that covers most pixels of a level would be taken for noise. `MAX_DEVIATION` allows
-/// for tone curves other than that of sRGB. The standard deviation may be that of two noises together: the share
-/// `MAX_SPREAD` of the light, and the photon noise of a camera that saturates at 500 electrons, as at high ISO speeds.
-/// [convention]
+/// for tone curves other than the sRGB curve. The standard deviation may be as large as for two noises together: the
+/// share `MAX_SPREAD` of the light, and the photon noise of a camera that saturates at 500 electrons, as at high ISO
+/// speeds. [convention]
 const MAX_DEVIATION: f32 = 0.2;
 const MAX_SPREAD: f32 = 0.1;
 const MAX_PHOTON_NOISE: f32 = 1.0 / 500.0;
@@ -66,8 +66,8 @@ fn level(light: f32) -> usize {
 }
 
 /// Returns the median and the standard deviation of a level. If the level was not measured, the median is 0, and the
-/// standard deviation is that of the nearest measured level; towards darker levels it grows as for Poisson noise. If no
-/// level was measured, the standard deviation is `MAX_SPREAD`.
+/// standard deviation is taken from the nearest measured level; towards darker levels it grows as for Poisson noise. If
+/// no level was measured, the standard deviation is `MAX_SPREAD`.
 fn nearest(found: &[Option<[f32; 2]>; LEVELS], level: usize) -> [f32; 2] {
     if let Some(values) = found[level] {
         return values;

@@ -129,9 +129,9 @@ fn the_merged_noise_is_that_of_the_theory() {
             continue;
         }
         let bound = total.powf(-0.5);
-        // There are 3072 values, so the standard error of their standard deviation is 1.3 % of it, and that of their
-        // mean is 1.8 % of it. The limit of the mean is wider, because the error that rounding to codes adds to one
-        // patch is not random.
+        // There are 3072 values, so the standard error of their standard deviation is 1.3 % of it, and the standard
+        // error of their mean is 1.8 % of it. The limit of the mean is wider, because the error that rounding to codes
+        // adds to one patch is not random.
         assert!(error < 1.12 * bound, "level {level}: error {error}, bound {bound}");
         assert!((mean - level).abs() < 0.25 * bound, "level {level}: mean {mean}, bound {bound}");
     }

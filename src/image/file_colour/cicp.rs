@@ -16,7 +16,7 @@ const PQ_WHITE: f64 = 203.0;
 const HLG_WHITE: f64 = 0.75;
 
 /// Returns the colour space with the given code points of primaries and transfer function; `None` if a code point is
-/// unknown. `full` maps a stored code to `[0, 1]`: it keeps codes of full range, and stretches those of video range.
+/// unknown. `full` maps a stored code to `[0, 1]`: it keeps codes of full range, and stretches codes of video range.
 pub fn space(primaries: u8, transfer: u8, full: impl Fn(f64) -> f64) -> Result<Option<Space>> {
     let function: fn(f64) -> f64 = match transfer {
         1 | 6 | 14 | 15 => bt709,

@@ -15,8 +15,8 @@
 //! whites other than D65 are adapted with the Bradford matrix, as in ICC profiles.
 //!
 //! Not modelled: rendering intents other than relative colorimetric (unless a profile lacks it), gain maps, endpoints
-//! and linked profiles of BMP files, black point compensation. If none of a file's statements can be used, the file is
-//! read as if it had none, and [`FileColour`] says so.
+//! and linked profiles of BMP files, black point compensation. If a file has statements but no usable statement, it is
+//! read as if it had no statements, and [`FileColour`] says so.
 
 mod chromaticities;
 mod cicp;

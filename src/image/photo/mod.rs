@@ -68,7 +68,7 @@ pub struct Luminance {
 }
 
 impl PhotoMetadata {
-    /// Converts the metadata of a file to the metadata of its photo. `width` and `height` may be those of the photo
+    /// Converts the metadata of a file to the metadata of its photo. `width` and `height` may be the size of the photo
     /// before or after it is turned upright: exchanging them does not change the focal length.
     pub(super) fn new(exif: &Exif, width: usize, height: usize, colour: FileColour) -> Self {
         Self {

@@ -25,8 +25,8 @@ impl<'a> Call<'a> {
         self.inputs.get(k).copied().flatten()
     }
 
-    /// Returns the integers of the attribute `setting` if it is present, else those of the optional input `k`, which
-    /// replaces the attribute in newer files. `None` if both are absent.
+    /// Returns the integers of the attribute `setting` if it is present, else the integers of the optional input `k`,
+    /// which replaces the attribute in newer files. `None` if both are absent.
     pub fn integers(&self, setting: Option<&[i64]>, k: usize) -> Result<Option<Vec<i64>>> {
         match (setting, self.optional(k)) {
             (Some(values), _) => Ok(Some(values.to_vec())),

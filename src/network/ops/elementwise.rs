@@ -165,7 +165,7 @@ pub enum Binary {
     Min,
     Max,
     PRelu,
-    /// The remainder of a division. It has the sign of the dividend if `fmod` is true, else that of the divisor.
+    /// The remainder of a division. It has the sign of the dividend if `fmod` is true, else the sign of the divisor.
     Mod {
         fmod: bool,
     },

@@ -1,4 +1,4 @@
-//! The operators: parsing from a node, and dispatch. Their semantics are those of the ONNX operator specification,
+//! The operators: parsing from a node, and dispatch. Their semantics follow the ONNX operator specification,
 //! <https://onnx.ai/onnx/operators/>.
 
 mod call;

@@ -3,9 +3,9 @@
 //!
 //! A product has variants, and a variant has light emitters, each with a photometry in EULUMDAT, IES or TM-33. The
 //! emitters of the chosen variant are added up. The description overrules the photometry file: an emitter's rated flux
-//! scales the intensities, and the power, colour temperature and colour rendering are those of its light source. A
-//! simple geometry replaces the luminous opening of the photometry. If it states no luminous heights, the heights of
-//! the photometry stay.
+//! scales the intensities, and the power, colour temperature and colour rendering come from its light source. A simple
+//! geometry replaces the luminous opening of the photometry. If it states no luminous heights, the heights of the
+//! photometry stay.
 //!
 //! Not read: models of the body (L3D and others), sensors, spectra, and emitters that shine only in an emergency.
 //! Emitters turned about a horizontal axis are refused.

@@ -90,7 +90,7 @@ fn emitters_of<'a>(variant: Element<'a>, definitions: Element<'a>) -> Result<Vec
 /// Returns the ids of the emitters to which a geometry refers.
 fn references(geometry: Element<'_>) -> Result<Vec<&str>> {
     // A simple geometry and a modelled geometry in one variant represent the same product, so do not add up their
-    // emitters: use those of the model, or else those of the simple geometry.
+    // emitters: use the emitters of the model, or else the emitters of the simple geometry.
     let inner = geometry.find("GeometryReferences").unwrap_or(geometry);
     let simple = inner.all("SimpleGeometryReference").filter_map(|reference| reference.attribute("emitterId"));
     let of_model = inner.all("ModelGeometryReference").flat_map(|model| model.all("EmitterReference"));

@@ -18,7 +18,7 @@ const LEVEL: u8 = 6;
 /// Writes a luminaire as a container with one variant. `now` becomes the date of the file.
 ///
 /// # Errors
-/// Those of [`Luminaire::check`].
+/// The errors of [`Luminaire::check`].
 pub fn write(luminaire: &Luminaire, now: Moment) -> Result<Vec<u8>> {
     let photometry = ldt::write(luminaire)?;
     let product = product(luminaire, &photometry, now);

@@ -23,7 +23,7 @@ pub fn read(bytes: &[u8]) -> Result<Luminaire> {
 /// Reads a TM-33 file like [`read`], and also counts its emitters.
 ///
 /// # Errors
-/// Those of [`read`].
+/// The errors of [`read`].
 pub fn read_file(bytes: &[u8]) -> Result<File> {
     let text = xml::decode(bytes)?;
     let document = xml::parse(&text)?;
@@ -65,8 +65,8 @@ fn luminous(emitter: Element) -> Option<Element> {
     found.or(other)
 }
 
-/// Returns an error if one of the elements at `paths` states another type of photometry than C. If none of them states
-/// a type, the photometry counts as type C.
+/// Returns an error if one of the elements at `paths` states another type of photometry than C. If no element states a
+/// type, the photometry counts as type C.
 fn check_type(element: Element, paths: &[&str]) -> Result<()> {
     for found in paths.iter().filter_map(|path| element.find(path)) {
         let letters: String = found.text().chars().filter(char::is_ascii_alphanumeric).collect();

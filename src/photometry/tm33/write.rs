@@ -7,10 +7,10 @@ use super::areas;
 use crate::error::Result;
 
 /// Writes a luminaire as a TM-33-23 file, with all planes of its distribution. Items that the format demands but a
-/// luminaire does not state (laboratory, report) are written as "none". The date of the report is that of `now`.
+/// luminaire does not state (laboratory, report) are written as "none". The report has the date of `now`.
 ///
 /// # Errors
-/// Those of [`Luminaire::check`].
+/// The errors of [`Luminaire::check`].
 pub fn write(luminaire: &Luminaire, now: Moment) -> Result<String> {
     luminaire.check()?;
     let l = luminaire;

@@ -9,8 +9,8 @@ use glam::{DMat3, DQuat, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
 /// Limits for accepting the correction of a tilt by the lines. `MAX_LOSS`: maximum increase of the shapes' cost over
-/// that of the uncorrected tilt. `MIN_EXPLAINED`: minimum score of the corrected axes; the score is about the share of
-/// the lines that run along the axes. [bench photos:tune]
+/// the cost with the uncorrected tilt. `MIN_EXPLAINED`: minimum score of the corrected axes; the score is about the
+/// share of the lines that run along the axes. [bench photos:tune]
 const MAX_LOSS: f64 = 2.0;
 const MIN_EXPLAINED: f64 = 0.5;
 /// Number of rotations about the normal that are tried within a right angle. [convention]

@@ -98,8 +98,8 @@ impl Classes<'_> {
         let Planes { width, height, channels, .. } = *image;
         // Smooth three images: the values of the first class (0 at pixels of the second), the values of the second
         // class (0 at pixels of the first), and the indicator of the first class (1 or 0). The mean over a class is its
-        // smoothed values divided by its smoothed indicator. The smoothed indicator of the second class is 1 minus that
-        // of the first class.
+        // smoothed values divided by its smoothed indicator. The smoothed indicator of the second class is 1 minus the
+        // smoothed indicator of the first class.
         let parts = Planes::from_rows([width, height, 2 * channels + 1], job.part(0.0, 0.1), |y, row| {
             let is_first = self.is_first.row(y, 0);
             let (values, share) = row.split_at_mut(2 * channels * width);

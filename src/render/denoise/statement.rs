@@ -7,7 +7,7 @@
 //! - Both halves are filtered by the same guides, which come from the paths of both. At edges and in textures, the
 //!   noise of the guides follows the noise of the halves.
 //! - The statistical test uses the same variance for both halves; the variance comes from the difference of the halves.
-//! - Both halves take the result of the same pass: the one with the least of several noisy error estimates.
+//! - Both halves take the result of one pass: the pass with the least of several noisy error estimates.
 //! - Light that comes by rare paths is usually missing from both halves.
 //!
 //! The filtered halves then agree more than independent halves would. The missing error is taken as a share of the

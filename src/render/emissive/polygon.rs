@@ -14,8 +14,8 @@ pub struct Rectangle {
 #[derive(Clone, Copy, PartialEq)]
 pub enum Overlap {
     None,
-    /// The triangle does not cover the whole rectangle, and none of its edges separates it from the rectangle. Only
-    /// clipping can tell how large the overlap is; near a corner of the triangle, the overlap may be empty.
+    /// The triangle does not cover the whole rectangle, and no edge of the triangle separates it from the rectangle.
+    /// Only clipping can tell how large the overlap is; near a corner of the triangle, the overlap may be empty.
     Part,
     Whole,
 }

@@ -5,8 +5,8 @@
 //! 2. The next passes give every pixel a few paths, then twice as many, and so on, since sample points are stratified
 //!    best at powers of two.
 //! 3. If there is an error target, the passes from [`MIN_UNIFORM_PATHS`] paths per pixel on are adaptive. Each adaptive
-//!    pass doubles the paths of some tiles: those whose required number of paths is the largest multiple of their
-//!    present number.
+//!    pass doubles the paths of the tiles whose required number of paths is the largest multiple of their present
+//!    number.
 //!
 //! If the target limits the error of the whole image, the required number of paths of a tile is proportional to the
 //! standard deviation of its paths (Neyman 1934). For a target on the relative error, each pixel's deviation is first
@@ -182,8 +182,8 @@ impl<'p> AdaptiveSampler<'p> {
         // Give each tile n = k d paths per pixel. Here d is the standard deviation of the tile's paths, raised where
         // the neighbouring tiles vary more, and k is the same for all tiles. If s is the variance of single paths in a
         // tile, the mean square error of the image is the mean of s / (k d) over the tiles, weighted by their pixels.
-        // Take the smaller of two values of k: the one that meets the target, and the one that spends `samples` paths
-        // per pixel.
+        // Take the smaller of two values of k: the value that meets the target, and the value that spends `samples`
+        // paths per pixel.
         let mean_of = |value: &dyn Fn(usize) -> f64| {
             (0..statistics.len()).map(|t| value(t) * f64::from(statistics[t].pixels)).sum::<f64>()
                 / f64::from(whole.pixels)

@@ -34,8 +34,8 @@ impl Pass {
     }
 
     /// Returns the mean number of paths per pixel of a tile after the pass; pixels that the pass does not cover count
-    /// with 0 paths. If the stride is larger than [`TILE`], the mean is not that of the tile itself, but of a square of
-    /// stride × stride pixels.
+    /// with 0 paths. If the stride is larger than [`TILE`], the mean is not taken over the tile itself, but over a
+    /// square of stride × stride pixels.
     pub fn per_pixel(&self, tile: usize) -> f64 {
         f64::from(self.counts[tile]) / (self.stride * self.stride) as f64
     }

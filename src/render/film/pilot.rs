@@ -2,7 +2,7 @@
 //!
 //! No number known before rendering predicts the cost and the variance of paths well. The pilot run therefore renders a
 //! sample of tiles exactly as the image would: at full resolution and with the same path sharing. A few tiles, such as
-//! those at the edge of a lamp, may cause most of an image's error. Therefore a few paths are first traced in all tiles
+//! tiles at the edge of a lamp, may cause most of an image's error. Therefore a few paths are first traced in all tiles
 //! (`tile_moments`), to estimate the standard deviation of each tile's light. Tiles are selected with a probability
 //! proportional to this deviation, and weighted by the reciprocal of this probability (Horvitz and Thompson 1952). The
 //! few paths that are traced first may miss the edge of a lamp in one tile but find it in the next, so the deviations
@@ -50,7 +50,7 @@ const MAX_DEEP_TILES: usize = 32;
 /// so that even tiles without variance can be selected. Predictions are unbiased for any positive value, and a tile of
 /// mean deviation is selected with the same probability for any value. [convention]
 const ADDED_WEIGHT: f64 = 0.5;
-/// Salt of the pilot's seed, so that its random numbers differ from those of the image.
+/// Salt of the pilot's seed, so that its random numbers differ from the random numbers of the image.
 const SALT: u64 = 0x7072_6f62_6564_2121;
 
 /// What a pilot run predicts about the whole image.
@@ -170,7 +170,7 @@ pub fn run(
 }
 
 /// Traces paths in the pilot tiles of positive `deep_weight` (before the third pass, all of them) until each of their
-/// pixels has `count` paths. Returns the sums of all pilot tiles, those without new paths included.
+/// pixels has `count` paths. Returns the sums of all pilot tiles, also of tiles without new paths.
 fn render_tiles(
     context: TileContext,
     chosen: &mut [PilotTile],

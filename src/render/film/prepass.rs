@@ -27,7 +27,7 @@ const PATHS: u32 = 4;
 /// For the roulette weight of a tile, one path is traced through every pixel whose column and row are multiples of this
 /// stride. Roulette is unbiased with any weights. [convention]
 const STEP: usize = 2;
-/// Salt of the prepass's seed, so that its random numbers differ from those of the image.
+/// Salt of the prepass's seed, so that its random numbers differ from the random numbers of the image.
 const SALT: u64 = 0x7375_7276_6579_6564;
 
 pub struct Prepass<'a> {

@@ -110,7 +110,7 @@ mod tests {
         };
         assert!((weight(0, &pixels[0]) - Vec3::ONE).abs().max_element() < 1e-5);
         assert!((weight(2, &pixels[2 * AREA]) - Vec3::new(4.0, 4.0, 1.0)).abs().max_element() < 0.05);
-        // If a pixel has few paths and is dark by chance, its weight is mainly that of its tile.
+        // If a pixel has few paths and is dark by chance, its weight comes mainly from its tile.
         let dark = weight(0, &pixel(DVec3::ZERO, 1)).x;
         assert!(dark > 1.0 && dark < 1.2, "{dark}");
         // Weights are bounded on both sides.

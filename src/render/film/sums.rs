@@ -150,7 +150,7 @@ impl Sums {
     }
 
     /// Returns the radiance sum of each replication (point sequence), and the sums of the layers. The list of
-    /// replications begins with the one that contains the part's first path, as `Pixel::of_sums` expects.
+    /// replications begins with the replication that contains the part's first path, as `Pixel::of_sums` expects.
     pub fn pixel(&self, x: usize, y: usize) -> ([DVec3; REPLICATIONS as usize], &[f64]) {
         let (light, layer_sums) = self.numbers([x, y]).split_at(LIGHT);
         let first = self.part.first as usize;

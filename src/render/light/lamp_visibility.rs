@@ -52,8 +52,8 @@ const UNLIKELY: u32 = 1 << 31;
 pub struct LampVisibility {
     /// Number of all lamps of the scene that emit: connected luminous surfaces, punctual lights, and the environment.
     pub lamps: usize,
-    /// Number of hidden lamps. A lamp is hidden if none of its light samples has arrived at a vertex of a path so far,
-    /// and later samples are unlikely to arrive.
+    /// Number of hidden lamps. A lamp is hidden if no light sample of it has arrived at a vertex of a path so far, and
+    /// later samples are unlikely to arrive.
     pub hidden: usize,
     /// Number of light samples on which `hidden` is based.
     pub samples: u64,
@@ -92,8 +92,8 @@ pub struct Split {
 }
 
 impl Split {
-    /// Divides the lights: those with a positive weight are likely, those with weight 0 are unlikely. Returns `None` if
-    /// one of the two selectors would have no light.
+    /// Divides the lights: lights with a positive weight are likely, lights with weight 0 are unlikely. Returns `None`
+    /// if one of the two selectors would have no light.
     pub fn new(lights: &Inventory, weights: Vec<f32>, unlikely_share: f64) -> Result<Option<Self>> {
         let likely = Selector::of_some(lights, |light| weights[light])?;
         let unlikely = Selector::of_some(lights, |light| if weights[light] > 0.0 { 0.0 } else { 1.0 })?;
@@ -130,7 +130,7 @@ impl Split {
 }
 
 /// Returns the share of the light samples that the unlikely lights get together, within `UNLIKELY_SHARES`. `samples` is
-/// the number of samples already drawn from these lights, none of which arrived.
+/// the number of samples already drawn from these lights; no such sample has arrived.
 ///
 /// Let p be the probability that a sample of these lights arrives. The variance of the image is smallest if the share
 /// is proportional to √p. As none of `samples` samples has arrived, p is at most about 1 / `samples`.

@@ -85,8 +85,8 @@ impl Lights {
         Self { survey: None, ..self }
     }
 
-    /// Counts the lamps of the scene and those that do not reach the surfaces in view. Returns `None` if the render
-    /// still has one selector for all lights, because it found too few such lamps or did not learn.
+    /// Counts the lamps of the scene, and the lamps that do not reach the surfaces in view. Returns `None` if the
+    /// render still has one selector for all lights, because it found too few such lamps or did not learn.
     pub fn lamp_visibility(&self) -> Result<Option<LampVisibility>> {
         let Some(split) = &self.split else { return Ok(None) };
         let own;

@@ -159,8 +159,8 @@ fn existing_labels(scene: &Scene, lamp_textures: &BTreeMap<usize, Arc<LampTextur
     existing
 }
 
-/// Finds the emission textures whose lamps an expression may name, as in `'Ceiling#3'`; the name before `#` is that of
-/// a mesh or of a material. Returns the textures by the index of their material.
+/// Finds the emission textures whose lamps an expression may name, as in `'Ceiling#3'`; the name before `#` is the name
+/// of a mesh or of a material. Returns the textures by the index of their material.
 fn lamp_textures(
     scene: &Scene,
     expressions: &[&Expression],

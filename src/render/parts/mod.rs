@@ -65,8 +65,8 @@ impl Rendered {
     }
 }
 
-/// Merges the files of all parts, in any order, into the image. The scene, the camera and the parameters must be those
-/// with which the parts were rendered. Call it on the library's own thread pool.
+/// Merges the files of all parts, in any order, into the image. The scene, the camera and the parameters must equal the
+/// scene, camera and parameters of the parts. Call it on the library's own thread pool.
 ///
 /// # Errors
 /// Parts of another render (the message names the difference); overlapping parts; missing paths (the message names the

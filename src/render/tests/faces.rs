@@ -297,7 +297,7 @@ fn sizes_may_be_extreme() {
         let (mean, _) = lux(&world(scene), Vec3::NEG_Y, Vec3::Y, 16);
         assert!((mean / 1000.0 - 1.0).abs() < 1e-3, "{size:?}: {mean}");
     }
-    // A luminaire of 2 mm has faces, but its light is nearly that of a point.
+    // A luminaire of 2 mm has faces, but its light is nearly the light of a point.
     let small = world(hung(lambertian([2e-3, 2e-3, 0.0], 1000.0 * PI)));
     assert!((lux(&small, Vec3::NEG_Y, Vec3::Y, 16).0 / 1000.0 - 1.0).abs() < 1e-3);
     // A panel of 10 km × 10 km with 100 lm/m² gives 100 lx everywhere below its middle.
@@ -387,8 +387,8 @@ fn layers_and_attributes_know_the_luminaires() {
     for (sum, beauty) in sums.iter().zip(&film.beauty.data) {
         assert!((sum - f64::from(*beauty)).abs() < 1e-3 * (1.0 + f64::from(*beauty)), "{sum} {beauty}");
     }
-    // The centre shows the faces of light 1. Numbers start at 1. Object numbers of lights follow those of the six
-    // meshes; the material number of all faces follows that of the only material.
+    // The centre shows the faces of light 1. Numbers start at 1. Object numbers of lights follow the object numbers of
+    // the six meshes; the material number of all faces follows the number of the only material.
     let attributes = film.layers[SHAPES.len()..].iter().map(|layer| layer.image.pixel(16, 16)[0]);
     assert_eq!(attributes.collect::<Vec<_>>(), [6.0 + 1.0 + 1.0, 2.0]);
 }

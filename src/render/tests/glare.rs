@@ -40,7 +40,7 @@ const EYE: Eye = Eye { position: Vec3::new(3.0, 1.2, 7.5), direction: Vec3::NEG_
 
 /// A Lambertian panel of 3000 lm and area A = 0.36 m² hangs 3 m ahead of the eye and 1.5 m above it, at a distance of
 /// r = √11.25 m. By hand: the luminance is L = 3000 / π / A. The solid angle is ω = A cos γ / r², with cos γ = 1.5 / r
-/// at the panel. Guth's position index p is that of the angles τ = 0 (from the vertical) and σ = 26.565° (from the line
+/// at the panel. Guth's position index p belongs to the angles τ = 0 (from the vertical) and σ = 26.565° (from the line
 /// of sight).
 #[test]
 fn a_panel_rates_as_computed_by_hand() {
@@ -147,8 +147,8 @@ fn the_background_is_the_indirect_illuminance() {
     assert!(off.abs() < 4.0 * error + 2e-3 * direct && error < 0.02 * total.mean, "{off} ± {error}");
 }
 
-/// The rating of a room far from the origin equals that of the same room at the origin. All coordinates are multiples
-/// of 1/8 m, which f32 represents exactly in both rooms.
+/// A room far from the origin gets the rating that it gets at the origin. All coordinates are multiples of 1/8 m, which
+/// f32 represents exactly in both rooms.
 #[test]
 fn a_room_in_map_coordinates_rates_as_at_the_origin() {
     let shift = Vec3::new(524_288.0, 0.0, -1_048_576.0);
@@ -262,7 +262,7 @@ fn a_panel_as_a_mesh_rates_as_the_panel_of_a_file() {
     let half = f64::from(side) / 2.0;
     let exact = 2.0 * (corner_solid_angle(half, 3.0 + half, 1.5) - corner_solid_angle(half, 3.0 - half, 1.5));
     assert!((b.solid_angle / exact - 1.0).abs() < 0.01, "{b:?} {exact}");
-    // The position index is that of the middle of the solid angle, which lies a little nearer to the eye than the
+    // The position index belongs to the middle of the solid angle, which lies a little nearer to the eye than the
     // middle of the panel. Add up the directions to 100 × 100 cells, weighted by their solid angles cos γ / r².
     let cell = |i: usize| half * ((i % 100) as f64 / 50.0 - 0.99);
     let cells = (0..10_000).map(|i| DVec3::new(cell(i), 1.5, cell(i / 100) - 3.0));

@@ -80,7 +80,7 @@ fn a_lambertian_disc_has_its_cosine() {
         let off = value - peak * l.gammas[i % 19].to_radians().cos().max(0.0);
         assert!(off.abs() < 4.0 * output.intensity_error + 1e-3, "{off} of {value} at {}", l.gammas[i % 19]);
     }
-    // The flux equals that of the cosine distribution, interpolated between the angles γ.
+    // The flux equals the flux of the cosine distribution, interpolated between the angles γ.
     let cosine = Luminaire {
         candela: l.gammas.iter().map(|g| peak * g.to_radians().cos().max(0.0)).collect(),
         planes: vec![0.0],

@@ -48,7 +48,8 @@ fn a_lit_texel_is_a_lamp_of_its_size_however_the_texture_wraps() {
         measure(&world(Scene { meshes: vec![floor.clone(), small], ..scene.clone() }), &centre_of(0));
     let (mean, own_error) = measure(&world(scene.clone()), &centre_of(0));
     assert!((mean - expected).abs() < 4.0 * error.hypot(own_error), "{mean} and {expected}");
-    // The standard error is less than twice that of the separate lamp, because no light samples go to dark texels.
+    // The standard error is less than twice the standard error of the separate lamp, because no light samples go to
+    // dark texels.
     assert!(own_error < 2.0 * error, "{own_error} and {error}");
 
     // Shift or mirror the texture coordinates; the wrap mode must map the lit texel to the same place. With

@@ -57,8 +57,8 @@ fn uniform_and_lambertian_luminaires_agree_with_closed_forms() {
     }
 }
 
-/// In the direction of a C plane, the intensity is that of the plane; midway between two planes, it is their mean.
-/// This holds for any orientation of the luminaire.
+/// In the direction of a C plane, the luminaire has the intensity of this plane; midway between two planes, it has the
+/// mean of their intensities. This holds for any orientation of the luminaire.
 #[test]
 fn c_planes_follow_the_axes_of_the_luminaire() {
     let quarters = Luminaire {

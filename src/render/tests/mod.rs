@@ -37,7 +37,7 @@ fn matt(albedo: f32, emission: f32) -> Material {
     Material { ior: 1.0, emission: Vec3::splat(emission), ..Material::diffuse("matt", Vec3::splat(albedo)) }
 }
 
-/// A ball of 1280 triangles. Its projected area is that of the sphere within 0.08 %.
+/// A ball of 1280 triangles. Its projected area is the projected area of the sphere within 0.08 %.
 fn ball(centre: Vec3, diameter: f64) -> Mesh {
     let opening = Opening::Ellipsoid(DVec3::splat(diameter));
     let faces = Faces::new(&opening, Emits { forwards: true, backwards: true }, 0.0);

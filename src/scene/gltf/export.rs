@@ -26,7 +26,7 @@ const NEAR: f32 = 0.01;
 /// distributions of luminaires are embedded as IES files (`EXT_lights_ies`). Meshes without triangles and the
 /// environment are left out, because glTF cannot represent them.
 ///
-/// Errors: those of [`Scene::validate`]; `Unsupported` for a texture transform with shear or a file of more than 4
+/// Errors: the errors of [`Scene::validate`]; `Unsupported` for a texture transform with shear or a file of more than 4
 /// GiB.
 pub fn export(scene: &Scene) -> Result<Vec<u8>> {
     scene.validate()?;

@@ -1,11 +1,11 @@
 //! Converts specular-glossiness materials (`KHR_materials_pbrSpecularGlossiness`), which occur in older files, to
 //! metallic-roughness.
 //!
-//! The conversion is the one that Khronos published with the extension ("convert-between-workflows", Gary Hsu). It
-//! solves a quadratic equation for the metalness at which the material keeps the brightness of its diffuse colour and
-//! of its specular colour. The base colour is a mixture of two estimates, one from the diffuse colour and one from the
-//! specular colour. Textures are converted texel by texel; the result has the larger width and the larger height of the
-//! two textures.
+//! The conversion follows the example that Khronos published with the extension ("convert-between-workflows", Gary
+//! Hsu). It solves a quadratic equation for the metalness at which the material keeps the brightness of its diffuse
+//! colour and of its specular colour. The base colour is a mixture of two estimates, one from the diffuse colour and
+//! one from the specular colour. Textures are converted texel by texel; the result has the larger width and the larger
+//! height of the two textures.
 //!
 //! Not modelled: textures of one material with different texture coordinates. Such a material keeps its
 //! metallic-roughness values and is listed as not rendered. If the two textures have different wrap modes, the wrap

@@ -96,7 +96,7 @@ struct Importer<'a> {
     tinted: Vec<(usize, Vec4, usize)>,
     /// Indices in the file of the IES profiles read so far. Profile `profiles[i]` is distribution `i` of the scene.
     profiles: Vec<usize>,
-    /// Whether `is_point` is set for all luminaires, even for those whose files state a luminous size.
+    /// Whether `is_point` is set for all luminaires, even for luminaires whose files state a luminous size.
     point_luminaires: bool,
     /// The world transform of each node; `None` for a node in or below a cycle of nodes. The list is empty if the file
     /// has no skins, because only the joints of skins need it.

@@ -5,7 +5,8 @@ use crate::error::{Error, Result};
 use crate::image::{try_collect, try_vec};
 use gltf::json::Root;
 
-/// Returns the root nodes: those of the default scene, else of the first scene, else all nodes without a parent.
+/// Returns the root nodes: the root nodes of the default scene, else of the first scene, else all nodes without a
+/// parent.
 pub fn roots(file: &File) -> Result<Vec<usize>> {
     let root = &file.root;
     let number = root.scene.map_or(0, |s| s.value());

@@ -66,7 +66,7 @@ impl Skinning {
         Ok(Some(skinning))
     }
 
-    /// Iterates over the joints that move a vertex (those whose weight is not 0), each with its weight.
+    /// Iterates over the joints that move a vertex (joints whose weight is not 0), each with its weight.
     fn influences(&self, vertex: usize) -> impl Iterator<Item = (usize, f64)> {
         let set = move |(joints, weights): &(Vec<[f32; 4]>, Vec<[f32; 4]>)| {
             let (joints, weights) = (joints[vertex], weights[vertex]);

@@ -67,8 +67,8 @@ pub fn bound(points: &[DVec3], centre: DVec3, u: DVec3, normal: DVec3) -> Boundi
 }
 
 /// Returns the u axis of the bounding rectangle of minimum area. Of the four directions of the rectangle's sides, it is
-/// the one that differs from `upright` by at most 45°. A side of the rectangle lies along an edge of the convex hull
-/// (Freeman and Shapira 1975).
+/// the direction that differs from `upright` by at most 45°. A side of the rectangle lies along an edge of the convex
+/// hull (Freeman and Shapira 1975).
 fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> DVec3 {
     let v = down_of(upright, normal);
     let flat = points.iter().map(|p| DVec2::new((*p - centre).dot(upright), (*p - centre).dot(v)));
@@ -87,7 +87,7 @@ fn smallest(points: &[DVec3], centre: DVec3, upright: DVec3, normal: DVec3) -> D
             best = (area, edge);
         }
     }
-    // Of the four directions along the sides of the rectangle, take the one nearest to `upright`.
+    // Of the four directions along the sides of the rectangle, take the direction nearest to `upright`.
     let edge = best.1;
     let turns = [edge, edge.perp(), -edge, -edge.perp()];
     let nearest = turns.into_iter().fold(edge, |a, b| if b.x > a.x + 1e-12 { b } else { a });

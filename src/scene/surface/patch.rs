@@ -121,7 +121,7 @@ fn facet(scene: &Scene, id: (usize, usize)) -> Option<Facet> {
     (area > 0.0 && area.is_finite()).then_some(Facet { id, area_vector, area, centre: (a + b + c) / 3.0, corners })
 }
 
-/// Maps opposite directions to the same direction: the one whose first large component is positive. A component is
+/// Maps two opposite directions to one of them: the direction whose first large component is positive. A component is
 /// large if its magnitude is more than half of the largest magnitude; rounding might change the sign of smaller ones.
 fn unsigned(direction: DVec3) -> DVec3 {
     let largest = direction.abs().max_element();

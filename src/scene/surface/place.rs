@@ -20,7 +20,7 @@ pub struct Placed {
 /// `strength × texture` in cd/m².
 ///
 /// The front of the new mesh faces the room, and only the front emits. The original meshes keep their indices and their
-/// other triangles. If the surface spans several meshes, the material is that of the mesh with the largest share of the
+/// other triangles. If the surface spans several meshes, its material comes from the mesh with the largest share of the
 /// surface's area.
 ///
 /// Errors: `InvalidArgument` if

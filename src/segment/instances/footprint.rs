@@ -10,7 +10,7 @@ use glam::Vec3;
 use std::f32::consts::FRAC_1_SQRT_2;
 
 /// The area of a face of the room, and the position on it, that each pixel shows. The face's plane counts beyond the
-/// face's edges too: if a pixel shows another face, the values are those of the point where the pixel's ray meets this
+/// face's edges too: if a pixel shows another face, the values belong to the point where the pixel's ray meets this
 /// plane. Lengths have the unit of the positions in the features.
 pub struct Footprint {
     /// Area on the face's plane that each pixel shows; infinite where the pixel's ray does not meet the plane.

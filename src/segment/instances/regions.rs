@@ -142,8 +142,8 @@ impl OnFace {
     }
 
     /// Whether two nodes lie in a row along u or along v, the axes of the room's face. They lie in a row along u if
-    /// their centres differ in v by at most `share` times the larger of their extents in v; likewise with u and v
-    /// exchanged.
+    /// their centres differ in v by at most `share` times the larger of their extents in v. The rule for rows along v
+    /// is the same with u and v exchanged.
     pub fn are_in_row(&self, a: usize, b: usize, share: f64) -> bool {
         self.across(a, b)
             .into_iter()

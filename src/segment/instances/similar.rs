@@ -61,8 +61,8 @@ const ON_PLANE: f64 = 0.5;
 /// holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
 /// A region is like a known lamp if its area divided by the lamp's area lies in `EQUAL_AREA`, and its aspect divided by
-/// the lamp's aspect lies in `EQUAL_ASPECT`. Two kinds of regions must be like a known lamp: those off the plane, and
-/// those that meet only the weaker limits [`ALIKE`]. The area may deviate more upwards than downwards, because blur
+/// the lamp's aspect lies in `EQUAL_ASPECT`. Two kinds of regions must be like a known lamp: regions off the plane, and
+/// regions that meet only the weaker limits [`ALIKE`]. The area may deviate more upwards than downwards, because blur
 /// enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.7..=2.0;
 const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;

@@ -122,7 +122,7 @@ impl Tree {
         std::iter::successors(Some(node), |&n| Some(self.parent[n as usize])).take_while(|&n| n != 0)
     }
 
-    /// The pixels of a node, including those of its descendants.
+    /// The pixels of a node, including the pixels of its descendants.
     pub fn pixels(&self, node: u32) -> &[u32] {
         let [from, to] = self.range[node as usize];
         &self.pixels[from as usize..to as usize]

@@ -143,7 +143,7 @@ def percent(share: float) -> str:
 
 
 def described_stages(warnings: Iterable[StageWarning]) -> list[dict[str, Any]]:
-    """Converts the warnings of a transfer for JSON, without those of its scene, which `files.scene_warnings` lists."""
+    """Converts the warnings of a transfer for JSON, except its scene's, which `files.scene_warnings` lists."""
     return described(w for w in warnings if w.stage.name != "SCENE")
 
 

@@ -51,7 +51,7 @@ class Goal:
         return {"target_error": self.error}
 
     def settings(self, planned: RenderParams, args: argparse.Namespace) -> dict[str, Any]:
-        """Completes the settings of a plan to those of the rendering."""
+        """Completes the settings of a plan to the settings of the rendering."""
         out = dict(planned)
         if not self.is_budget and self.seconds:
             out["time_budget_ms"] = round(1000 * self.seconds)

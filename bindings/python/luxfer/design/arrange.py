@@ -44,8 +44,8 @@ if TYPE_CHECKING:
     from .project import Project
     from .standard import Requirement
 
-#: Margins of the first choice beyond those of the solution, as a share of the limit and in units of UGR, because
-#: interpolated coefficients are uncertain. [convention]
+#: Margins of the first choice in addition to the margins of the solution, as a share of the limit and in units of UGR,
+#: because interpolated coefficients are uncertain. [convention]
 MARGIN, GLARE_MARGIN = 0.01, 0.4
 #: First step of the scale as a factor, and of the offset in shares of the lattice; each round halves them.
 #: [convention]
@@ -460,7 +460,7 @@ def _wanted(areas: Sequence[Area], requirements: Sequence[Requirement], surfaces
 
 
 def _below(project: Project) -> float:
-    """Distance of the photo's lamps below the ceiling, in metres: that of the middle one."""
+    """Distance of the photo's lamps below the ceiling, in metres: the median over the lamps."""
     room = project.room
     gaps = [room.height - (lamp.position[1] - room.origin[1]) for lamp in project.luminaires if lamp.flux > 0]
     return max(0.005, float(np.median(gaps)))

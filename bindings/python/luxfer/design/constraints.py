@@ -27,7 +27,7 @@ DIMMABLE = ("mean", "uniformity", "minimum", "glare", "density", "flux")
 
 @dataclass(frozen=True)
 class Model:
-    """The responses with which requirements are evaluated. Dimmers are those of the luminaires, from 0 to 1."""
+    """The responses with which requirements are evaluated. Each dimmer belongs to a luminaire and lies in [0, 1]."""
 
     luminaires: Sequence[Luminaire]
     responses: Mapping[str, Response]

@@ -181,7 +181,7 @@ def _scenes(project: Project, scenes: Mapping[str, Checked]) -> list[Block]:
 
 
 def _seconds(second: Sequence[Second]) -> list[Block]:
-    """The numbers of Radiance beside those of this package."""
+    """The numbers of Radiance beside the numbers of this package."""
     if not second:
         return []
     rows = []

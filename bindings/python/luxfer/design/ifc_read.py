@@ -193,7 +193,7 @@ class _Model:
         return out
 
     def fixtures(self, space: Any, low: NDArray, high: NDArray) -> list[Any]:
-        """The light fixtures of a space: those that it contains, and those of other places that lie in it."""
+        """The light fixtures of a space: fixtures that it contains, and fixtures of other places that lie in it."""
         out = []
         for fixture in self.file.by_type("IfcLightFixture"):
             holder = self.lib.util.element.get_container(fixture)
@@ -207,7 +207,7 @@ class _Model:
         return out
 
     def values(self, product: Any) -> dict[str, Any]:
-        """All properties by their names; those of the product come before those of its type."""
+        """All properties by their names. Properties of the product precede properties of its type."""
         sets = self.lib.util.element.get_psets(product)
         return {name: value for properties in sets.values() for name, value in properties.items()}
 
@@ -263,7 +263,7 @@ class _Model:
         )
 
     def _source(self, fixture: Any, kind: Any) -> tuple[Any, NDArray[np.float64]]:
-        """The goniometric light source of a fixture or of its type, and its frame in that of the fixture."""
+        """The goniometric light source of a fixture or of its type, and its frame in the frame of the fixture."""
         shown = list(fixture.Representation.Representations) if fixture.Representation is not None else []
         if kind is not None and kind.RepresentationMaps:
             shown += [m.MappedRepresentation for m in kind.RepresentationMaps]

@@ -117,7 +117,7 @@ class Uniformity:
     """U0, the smallest over the mean illuminance of independent points.
 
     The smallest of noisy values is too small on average, so no interval is centred on it. Instead each point is
-    compared with U0 times the mean. U0 is at least a limit if every point passes: the confidence is that of the worst
+    compared with U0 times the mean. U0 is at least a limit if every point passes, with the confidence of the worst
     point (intersection-union test). U0 is below the limit if any point fails. With more points, it is likelier that one
     of them fails by chance, so the error of the worst point counts once for each point (Bonferroni).
     """
@@ -235,7 +235,7 @@ def _z(gaps: NDArray[np.float64], spreads: NDArray[np.float64]) -> NDArray[np.fl
 
 def _front(values: NDArray[np.float64], errors: NDArray[np.float64]) -> NDArray[np.intp]:
     """The points of which one has the smallest gap in standard errors to any limit: the points whose error is larger or
-    smaller than that of all points of smaller value. All points if a value or an error is not known."""
+    smaller than the errors of all points of smaller value. All points if a value or an error is not known."""
     if np.isnan(values).any() or np.isnan(errors).any():
         return np.arange(len(values))
     order = np.lexsort((errors, values))

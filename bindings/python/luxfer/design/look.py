@@ -19,7 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-#: Weight of the squared relative exposure against that of the pattern. [convention: a change of all lamps by a tenth
+#: Weight of the squared relative exposure against the pattern's weight. [convention: a change of all lamps by a tenth
 #: counts as much as a change of single lamps by a hundredth]
 EXPOSURE_WEIGHT = 0.01
 #: A lamp that the photo shows off counts as this share of the brightest. [convention]
@@ -64,9 +64,9 @@ def distance(
 
 def objective(photo: NDArray, flux: NDArray, surfaces: NDArray | None = None) -> tuple[NDArray, NDArray]:
     """Hessian and gradient over the dimmers and the exposure k of `Σ w (s / p - k)² + EXPOSURE_WEIGHT (k - 1)²`,
-    where w is the share of a lamp in the photo's flux, s its dimmer and p that of the photo. With surfaces, also the
-    mean of `(Σ r s - k)²` over them, where r is the brightness of a surface by a lamp at full power as a share of its
-    brightness by the photo's lamps."""
+    where w is the share of a lamp in the photo's flux, s its dimmer and p its dimmer in the photo. With surfaces, also
+    the mean of `(Σ r s - k)²` over them, where r is the brightness of a surface by a lamp at full power as a share of
+    its brightness by the photo's lamps."""
     before = _at_least(photo)
     weights = before * flux
     weights = weights / weights.sum()

@@ -58,7 +58,7 @@ class Product:
         rendering: float = 0,
     ) -> Product:
         """A product from its .ies, .ldt, .xml (TM-33) or .gldf file; if watts or rendering is 0, the value of the file
-        is used. The name of a variant may follow that of a .gldf file, as in lamp.gldf#black."""
+        is used. The name of a variant may follow the name of a .gldf file, as in lamp.gldf#black."""
         file = luminaire_path(path)
         kind = file.suffix.lower().lstrip(".")
         if f".{kind}" not in LUMINAIRES:

@@ -103,7 +103,7 @@ def field(room: Room, found: Field, unit: str) -> Drawing:
 
 
 def _unrolled(room: Room, found: Field, low: float, high: float) -> Scale:
-    """The walls seen from inside, each with its floor below: those along the room above, those across it below."""
+    """The walls seen from inside, each with its floor below: walls along the room above, walls across it below."""
     lengths = [float(np.linalg.norm(p.across)) for p in found.area.patches]
     gap = 0.35
     half = (len(lengths) + 1) // 2

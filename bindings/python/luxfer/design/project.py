@@ -48,7 +48,7 @@ class Project:
     scenes: Sequence[LightScene] = ()
     """Named states of the dimmers."""
     standby: energies.Standby = energies.Standby()
-    """Power used besides that of the light, for the energy of the design."""
+    """Power used besides the power of the light, for the energy of the design."""
 
     def requiring(self, *more: Requirement) -> Project:
         """The project with further requirements."""

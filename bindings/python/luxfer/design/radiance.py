@@ -147,7 +147,7 @@ def _value(quantity: str, field: Field, up: Field | None) -> float:
 
 
 def _grids(area: Area) -> list[tuple[str, Area]]:
-    """The grids of an area by the ends of their names: of cylindrical ones also that of the horizontal plane."""
+    """The grids of an area by the ends of their names: cylindrical areas also have a grid on the horizontal plane."""
     return [("", area), ("-up", horizontal(area))] if area.kind == "cylindrical" else [("", area)]
 
 

@@ -35,7 +35,7 @@ class LightScene:
     direct: bool = False
     """Whether only the light straight from the luminaires counts, as for emergency light."""
     maintenance: float | None = None
-    """Its maintenance factor, if it differs from that of the design, as for light from batteries."""
+    """Its maintenance factor, if it differs from the factor of the design, as for light from batteries."""
 
     def __post_init__(self) -> None:
         if not self.name:

@@ -52,7 +52,7 @@ def luminaires(project: Project) -> str:
 
 def results(checked: Checked, scenes: Mapping[str, Checked] | None = None) -> str:
     """One row for each requirement, with limit, value, interval, confidence and outcome; the requirements of the light
-    scenes come after those of the design."""
+    scenes come after the requirements of the design."""
     rows: list[list[object]] = [
         ["light scene", "area", "quantity", "side", "limit", "value", "low", "high", "unit", "confidence", "outcome"]
         + ["reference", "note"]

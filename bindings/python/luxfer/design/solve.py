@@ -40,7 +40,7 @@ MARGIN, GLARE_MARGIN = 0.005, 0.1
 ROUNDS = 5
 #: Limits are kept by this share of their scale, so that the barrier has an inside. [rounding]
 INSIDE = 1e-6
-#: The responses are measured with seeds this far from those of the check. [convention]
+#: The responses are measured with seeds this far from the seeds of the check. [convention]
 SEED_OFFSET = 100_003
 
 
@@ -113,7 +113,7 @@ def solve(
     model: Model | None = None,
     surfaces: NDArray | None = None,
 ) -> Solution:
-    """Solves for the dimmers; those of the given luminaires are the photo's look. With the model of an earlier
+    """Solves for the dimmers; the dimmers of the given luminaires are the photo's look. With the model of an earlier
     solution for the same luminaires and areas (see measured_model) only the check traces light. With surfaces, their
     brightness ratios belong to the look, too (see look.objective)."""
     if model is None:

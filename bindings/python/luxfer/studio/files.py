@@ -117,7 +117,7 @@ class Files:
         return known
 
     def open_named(self, project: Project, folder: Path) -> None:
-        """Opens those files of a project that lie in its folder and have the hashes that the project states. A project
+        """Opens the files of a project that lie in its folder and have the hashes that the project states. A project
         may come from a stranger, so its file names must not lead out of the folder."""
         folder = folder.resolve()
         for file in filter(None, (project["photo"], project["room"])):

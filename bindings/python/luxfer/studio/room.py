@@ -13,7 +13,7 @@ from ..cli.plane import Plane, above_floor, level
 from .project import Project
 
 #: KEY: the value, relative to display white, of a surface with the room's mean illuminance [convention: half a stop
-#: above middle grey]. REFLECTANCE: the assumed reflectance of this surface [convention: between those of floors (0.2)
+#: above middle grey]. REFLECTANCE: the assumed reflectance of this surface [convention: between floors (0.2)
 #: and ceilings (0.7) in EN 12464-1].
 KEY, REFLECTANCE = 0.25, 0.45
 #: Maximum side of the emissive texture in texels.

@@ -364,7 +364,7 @@ fn morph_targets_are_mixed_by_their_weights() {
     };
     assert_eq!(read(Value::Null, Value::Null), (Vec3::ZERO, Vec3::Z));
     assert_eq!(read(Value::Null, json!([0.5, 0])), (Vec3::Z, Vec3::Z));
-    // The weights of a node override those of its mesh.
+    // The weights of a node override the weights of its mesh.
     let (position, normal) = read(json!([0, 0.25]), json!([0.5, 0]));
     assert!(near(position, Vec3::X) && near(normal, Vec3::new(1.0, 0.0, 1.0).normalize()), "{position} {normal}");
     let error = import(&file(json!([1, 0]), Value::Null, 2), None).unwrap_err();
