@@ -35,11 +35,13 @@
 //! - Woop, Benthin and Wald 2013: Watertight ray/triangle intersection. Burley 2020: Practical hash-based Owen
 //!   scrambling.
 
-// Warn about calls that panic, exit or write to the console.
+// Warn about calls that panic, exit, write to the console, or give other bits on other platforms (clippy.toml).
 #![cfg_attr(
     not(test),
     warn(
         clippy::dbg_macro,
+        clippy::disallowed_methods,
+        clippy::disallowed_types,
         clippy::exit,
         clippy::get_unwrap,
         clippy::panic,
@@ -57,6 +59,7 @@ pub mod exec;
 pub mod geometry;
 pub mod image;
 pub mod job;
+mod maths;
 #[cfg(feature = "onnx")]
 pub mod network;
 pub mod photometry;

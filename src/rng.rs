@@ -1,6 +1,8 @@
 //! Counter-based random numbers. Each number is a pure function of a seed and of coordinates, such as a pixel's
 //! position. Results therefore do not depend on the order in which threads compute them.
 
+use crate::maths;
+
 /// Hashes 64 bits so that every input bit affects every output bit (the finaliser of SplitMix64, Steele et al. 2014).
 #[inline]
 pub fn mix(mut x: u64) -> u64 {
@@ -53,8 +55,8 @@ impl Rng {
 
     /// Returns a standard normal deviate (Box and Muller 1958).
     pub fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.next_f64()).ln()).sqrt();
-        radius * (std::f64::consts::TAU * self.next_f64()).cos()
+        let radius = (-2.0 * maths::ln(1.0 - self.next_f64())).sqrt();
+        radius * maths::cos(std::f64::consts::TAU * self.next_f64())
     }
 }
 

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::try_with_capacity;
 use crate::job::Job;
+use crate::maths;
 use glam::{DVec3, Vec3, Vec3A};
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::node::Bvh2Node;
@@ -141,7 +142,8 @@ struct Grid {
 impl Grid {
     fn over(low: Vec3, high: Vec3) -> Self {
         let extent = high.as_dvec3() - low.as_dvec3();
-        let scale = (-extent.max_element().max(f64::MIN_POSITIVE).log2().ceil()).clamp(-126.0, 126.0).exp2();
+        let scale =
+            maths::exp2((-maths::log2(extent.max_element().max(f64::MIN_POSITIVE)).ceil()).clamp(-126.0, 126.0));
         let max_cell = DVec3::splat(f64::from((1 << BITS) - 1));
         // Bound the extent from below to avoid a division by zero. If the scene is flat along an axis, all boxes then
         // lie in one layer of cells.

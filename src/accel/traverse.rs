@@ -1,7 +1,7 @@
 //! Traversal of the acceleration structure: finds the nearest hit of a ray, or whether there is any hit.
 
 use super::cache_lines::Lines;
-use super::lanes::{self, Baseline, Lanes, take_highest, take_lowest};
+use super::lanes::{Baseline, Lanes, take_highest, take_lowest};
 use super::node::{Child, Node, NodeRay};
 use super::packet::{Packet, TriangleRay};
 use super::prepared_ray::PreparedRay;
@@ -96,7 +96,7 @@ impl Accel {
         accept: &mut impl FnMut(&Hit) -> bool,
         stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
-        self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
+        self.traverse::<super::lanes::Avx2, ANY>(ray, accept, stack)
     }
 
     #[cfg(target_arch = "x86_64")]
@@ -107,7 +107,7 @@ impl Accel {
         accept: &mut impl FnMut(&Hit) -> bool,
         stack: &mut [MaybeUninit<Waiting>],
     ) -> Option<Hit> {
-        self.traverse::<lanes::Avx2, ANY>(ray, accept, stack)
+        self.traverse::<super::lanes::Avx2, ANY>(ray, accept, stack)
     }
 
     /// Traverses the tree, and visits the nearest child first. With `ANY`, visits the child in the last lane first,

@@ -52,5 +52,7 @@ impl IndexMut<u32> for Tree {
 #[inline(always)]
 pub(super) fn half_area(shape: &Aabb) -> f32 {
     let d = (shape.max - shape.min).extend(0.0);
-    d.dot(d.yzxw())
+    // glam's dot product adds in another order on ARM.
+    let products = d * d.yzxw();
+    (products.x + products.z) + products.y
 }

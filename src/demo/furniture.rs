@@ -3,6 +3,7 @@
 
 use super::Builder;
 use super::shapes::{ball, cuboid, lathe, moved};
+use crate::maths;
 use crate::rng::Rng;
 use crate::scene::Mesh;
 use glam::{Vec2, Vec3};
@@ -143,7 +144,7 @@ pub fn fruit_bowl(b: &mut Builder, foot: Vec3, glaze: usize, fruit: [usize; 2]) 
     for (k, material) in fruit.into_iter().enumerate() {
         let mut mesh = Mesh::default();
         for i in (k..5).step_by(2) {
-            let (s, c) = (i as f32 * std::f32::consts::TAU / 5.0).sin_cos();
+            let (s, c) = maths::sin_cos(i as f32 * std::f32::consts::TAU / 5.0);
             ball(&mut mesh, foot + Vec3::new(0.06 * c, 0.075, 0.06 * s), Vec2::splat(0.036), 24);
         }
         b.add("Fruit", material, mesh);
@@ -159,9 +160,9 @@ pub fn plant(b: &mut Builder, foot: Vec3, height: f32, pot: usize, leaves: usize
     let mut crown = Mesh::default();
     let mut rng = Rng::new(6, &[]);
     for i in 0..60 {
-        let (s, c) = (i as f32 * 2.399_963).sin_cos();
+        let (s, c) = maths::sin_cos(i as f32 * 2.399_963);
         let up = (i as f32 + 0.5) / 60.0;
-        let radius = 0.05 + 0.25 * (std::f32::consts::PI * up).sin() * (0.6 + 0.4 * rng.next_f32());
+        let radius = 0.05 + 0.25 * maths::sin(std::f32::consts::PI * up) * (0.6 + 0.4 * rng.next_f32());
         let centre = foot + Vec3::new(radius * c, 0.30 + (height - 0.4) * up, radius * s);
         ball(&mut crown, centre, Vec2::new(0.055, 0.03 + 0.03 * rng.next_f32()), 10);
     }

@@ -4,8 +4,9 @@
 use super::shapes::{cuboid, pierced, sheet};
 use super::{Builder, furniture, pattern};
 use crate::error::Result;
+use crate::maths;
 use crate::scene::{Camera, Material, Mesh, Scene};
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 const SIZE: Vec3 = Vec3::new(5.4, 2.7, 9.0);
 /// Side of the ceiling's tiles in metres (`TILE`), and number of tiles along x and z (`TILES`). [convention]
@@ -73,8 +74,9 @@ pub fn exemplar_room() -> Result<Exemplar> {
 
     // Rotate the camera relative to the room and roll it slightly, so that all three vanishing points are finite.
     let (yaw, pitch, roll) = (-17f32.to_radians(), 22f32.to_radians(), 1.2f32.to_radians());
-    let turn = Mat3::from_rotation_y(yaw) * Mat3::from_rotation_x(pitch) * Mat3::from_rotation_z(roll);
-    let fov_y = 2.0 * ((33f32.to_radians()).tan() / 1.5).atan();
+    let turn =
+        maths::rotation_3d(Vec3::Y, yaw) * maths::rotation_3d(Vec3::X, pitch) * maths::rotation_3d(Vec3::Z, roll);
+    let fov_y = 2.0 * maths::atan(maths::tan(33f32.to_radians()) / 1.5);
     b.scene.cameras.push(Camera {
         name: "Photographer".into(),
         position: Vec3::new(1.75, 1.5, 8.6),

@@ -5,6 +5,7 @@ use crate::exec;
 use crate::image::colour::{linear_to_srgb, luminance, srgb_to_linear};
 use crate::image::{Image, pyramid, try_collect};
 use crate::job::Job;
+use crate::maths;
 use crate::render::{self, World};
 use crate::rng::Rng;
 use crate::scene::{Camera, Scene};
@@ -67,16 +68,16 @@ pub fn photograph(scene: Arc<Scene>, camera: &Camera, params: &Params, job: Job)
     // White balance: shift the room's mean colour towards grey at constant luminance.
     let mean = film.beauty.data.chunks_exact(3).map(|p| Vec3::from_slice(p)).sum::<Vec3>();
     let mean = (mean / luminance(mean).max(f32::MIN_POSITIVE)).max(Vec3::splat(1e-3));
-    let balance = mean.powf(-WHITE_BALANCE);
+    let balance = mean.map(|v| maths::powf(v, -WHITE_BALANCE));
     let balance = balance / luminance(mean * balance);
 
     // Model vignetting and the sensor: shot noise, read-out noise, clipping at white, and rounding to 8 bits.
     let mut photo = Image::new(params.width, params.height, 3)?;
     let centre = [params.width as f32 / 2.0, params.height as f32 / 2.0];
-    let half_diagonal = centre[0].hypot(centre[1]);
+    let half_diagonal = maths::hypot(centre[0], centre[1]);
     exec::for_rows(&mut photo.data, params.width * 3, job.part(0.96, 1.0), |y, row| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
-            let radius = (x as f32 + 0.5 - centre[0]).hypot(y as f32 + 0.5 - centre[1]) / half_diagonal;
+            let radius = maths::hypot(x as f32 + 0.5 - centre[0], y as f32 + 0.5 - centre[1]) / half_diagonal;
             let falloff = 1.0 - (1.0 - VIGNETTE) * radius * radius;
             let mut rng = Rng::new(params.seed, &[x as u64, y as u64]);
             for (c, out) in pixel.iter_mut().enumerate() {

@@ -3,6 +3,7 @@
 use super::shapes::{ball, cuboid, mesh_of, moved, pierced, sheet};
 use super::{Builder, furniture, pattern};
 use crate::error::Result;
+use crate::maths;
 use crate::scene::{Camera, Mesh, Scene};
 use glam::{Vec2, Vec3};
 
@@ -117,7 +118,7 @@ fn openings(b: &mut Builder) {
         let mut mesh =
             mesh_of(|m| sheet(m, Vec3::new(from, 0.12, 0.10), Vec3::X * (to - from), Vec3::Y * 2.3, [60, 6]));
         for p in &mut mesh.positions {
-            p.z += 0.035 * ((p.x - from) * 75.0).sin() * (1.15 - 0.1 * p.y);
+            p.z += 0.035 * maths::sin((p.x - from) * 75.0) * (1.15 - 0.1 * p.y);
         }
         b.add("Curtain", mustard, mesh);
     }

@@ -4,8 +4,9 @@
 //! share of a turn about the axis, in `[0, 1]`, and the height in metres above the foot. Round shapes have normals and
 //! flat shapes have none, so the two kinds must not share a mesh.
 
+use crate::maths;
 use crate::scene::Mesh;
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 /// Creates a mesh and lets `build` add flat shapes to it.
 pub fn mesh_of(build: impl FnOnce(&mut Mesh)) -> Mesh {
@@ -82,7 +83,7 @@ pub fn lathe(mesh: &mut Mesh, foot: Vec3, profile: &[Vec2], segments: u32) {
         let outward = Vec2::new(along.y, -along.x).normalize_or(Vec2::X);
         for k in 0..=segments {
             let turn = k as f32 / segments as f32;
-            let (s, c) = (std::f32::consts::TAU * turn).sin_cos();
+            let (s, c) = maths::sin_cos(std::f32::consts::TAU * turn);
             mesh.positions.push(foot + Vec3::new(p.x * c, p.y, -p.x * s));
             mesh.normals.push(Vec3::new(outward.x * c, outward.y, -outward.x * s));
             mesh.uvs[0].push(Vec2::new(turn, p.y));
@@ -102,7 +103,7 @@ pub fn ball(mesh: &mut Mesh, centre: Vec3, radius: Vec2, segments: u32) {
     let steps = segments / 2;
     let profile: Vec<Vec2> = (0..=steps)
         .map(|i| {
-            let (s, c) = (std::f32::consts::PI * i as f32 / steps as f32).sin_cos();
+            let (s, c) = maths::sin_cos(std::f32::consts::PI * i as f32 / steps as f32);
             Vec2::new(s * radius.x, -c * radius.y)
         })
         .collect();
@@ -111,7 +112,7 @@ pub fn ball(mesh: &mut Mesh, centre: Vec3, radius: Vec2, segments: u32) {
 
 /// Rotates a mesh about the vertical through the origin, then moves it by `to`.
 pub fn moved(mut mesh: Mesh, degrees: f32, to: Vec3) -> Mesh {
-    let turn = Mat3::from_rotation_y(degrees.to_radians());
+    let turn = maths::rotation_3d(Vec3::Y, degrees.to_radians());
     mesh.positions.iter_mut().for_each(|p| *p = turn * *p + to);
     mesh.normals.iter_mut().for_each(|n| *n = turn * *n);
     mesh

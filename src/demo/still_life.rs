@@ -7,8 +7,9 @@
 use super::Builder;
 use super::shapes::{ball, lathe, mesh_of, moved, sheet};
 use crate::error::Result;
+use crate::maths;
 use crate::scene::{Camera, Environment, Mesh, Scene};
-use glam::{Mat3, Vec2, Vec3};
+use glam::{Vec2, Vec3};
 
 /// Two opposite corners of the rectangular lamp, which faces the table.
 const LAMP: [Vec3; 2] = [Vec3::new(0.12, 0.62, -0.12), Vec3::new(0.34, 0.56, 0.06)];
@@ -37,7 +38,7 @@ pub fn still_life() -> Result<Scene> {
     b.add("Vase", red, vase);
     let mut ring = Mesh::default();
     torus(&mut ring, 0.062, 0.023);
-    let tilt = Mat3::from_rotation_z(-0.16) * Mat3::from_rotation_x(1.25);
+    let tilt = maths::rotation_3d(Vec3::Z, -0.16) * maths::rotation_3d(Vec3::X, 1.25);
     ring.positions.iter_mut().for_each(|p| *p = tilt * *p);
     ring.normals.iter_mut().for_each(|n| *n = tilt * *n);
     let lowest = ring.positions.iter().fold(f32::MAX, |low, p| low.min(p.y));
@@ -120,9 +121,9 @@ fn torus(mesh: &mut Mesh, radius: f32, tube: f32) {
     let (around, across) = (128u32, 48u32);
     let first = mesh.positions.len() as u32;
     for i in 0..=around {
-        let (s, c) = (std::f32::consts::TAU * i as f32 / around as f32).sin_cos();
+        let (s, c) = maths::sin_cos(std::f32::consts::TAU * i as f32 / around as f32);
         for j in 0..=across {
-            let (t, r) = (std::f32::consts::TAU * j as f32 / across as f32).sin_cos();
+            let (t, r) = maths::sin_cos(std::f32::consts::TAU * j as f32 / across as f32);
             let normal = Vec3::new(r * c, t, -r * s);
             mesh.positions.push(Vec3::new(c, 0.0, -s) * radius + normal * tube);
             mesh.normals.push(normal);

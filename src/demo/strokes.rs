@@ -3,6 +3,7 @@
 use super::Exemplar;
 use crate::error::Result;
 use crate::image::Image;
+use crate::maths;
 use crate::scene::Camera;
 use crate::segment::{Stroke, StrokeSet};
 use glam::{DVec2, Vec2, Vec3};
@@ -82,7 +83,7 @@ fn project(camera: &Camera, point: Vec3, width: usize, height: usize) -> Option<
         return None;
     }
     let right = camera.forward.cross(camera.up);
-    let scale = f64::from(height as u32) / 2.0 / f64::from((camera.fov_y / 2.0).tan());
+    let scale = f64::from(height as u32) / 2.0 / f64::from(maths::tan(camera.fov_y / 2.0));
     let offset = DVec2::new(f64::from(v.dot(right) / depth), -f64::from(v.dot(camera.up) / depth));
     Some(DVec2::new(width as f64 / 2.0, height as f64 / 2.0) + offset * scale)
 }

@@ -4,6 +4,8 @@
 //! The method applies Bayes' rule to the logarithm of the distance, on a grid. The prior covers rooms and halls. The
 //! likelihood of a lamp's two sides is a mixture of the usual lamp sizes and a broad distribution of all sizes.
 
+use crate::maths;
+
 /// Range of the distances in the grid, in metres, and number of grid points. [convention]
 const RANGE: [f64; 2] = [0.3, 20.0];
 const STEPS: usize = 400;
@@ -57,43 +59,44 @@ impl CameraDistance {
     /// sides and the median of their shorter sides, as multiples of the distance. Lengths of 0 mean that there is no
     /// rectangular lamp.
     pub fn of_lamps(sides: [f64; 2]) -> Self {
-        let [low, high] = RANGE.map(f64::ln);
+        let [low, high] = RANGE.map(maths::ln);
         let step = (high - low) / STEPS as f64;
         let at = |k: usize| low + (k as f64 + 0.5) * step;
         let weights: Vec<f64> = (0..STEPS).map(|k| prior(at(k)) * likelihood(at(k), sides)).collect();
         let total: f64 = weights.iter().sum();
         let mean: f64 = weights.iter().enumerate().map(|(k, w)| w * at(k)).sum::<f64>() / total;
-        let square: f64 = weights.iter().enumerate().map(|(k, w)| w * (at(k) - mean).powi(2)).sum::<f64>() / total;
+        let square: f64 =
+            weights.iter().enumerate().map(|(k, w)| w * maths::powi(at(k) - mean, 2)).sum::<f64>() / total;
         let mut below = 0.0;
         let median = weights.iter().position(|w| {
             below += w;
             below >= total / 2.0
         });
-        Self { metres: at(median.unwrap_or(STEPS / 2)).exp(), error: square.sqrt() }
+        Self { metres: maths::exp(at(median.unwrap_or(STEPS / 2))), error: square.sqrt() }
     }
 }
 
 fn prior(log_metres: f64) -> f64 {
-    PRIOR.iter().map(|[weight, median, deviation]| weight * normal(log_metres - median.ln(), *deviation)).sum()
+    PRIOR.iter().map(|[weight, median, deviation]| weight * normal(log_metres - maths::ln(*median), *deviation)).sum()
 }
 
 /// Probability density of the logarithms of a lamp's two sides, if the plane is at the given distance. If the sides are
 /// not positive and finite, the density is the same for all distances.
 fn likelihood(log_metres: f64, sides: [f64; 2]) -> f64 {
-    let any = OTHER / (SIDES[1] / SIDES[0]).ln().powi(2);
+    let any = OTHER / maths::powi(maths::ln(SIDES[1] / SIDES[0]), 2);
     if !sides.iter().all(|side| side.is_finite() && *side > 0.0) {
         return any;
     }
     let pdf = |[long, short, weight]: &[f64; 3]| {
-        let off =
-            [(sides[0], long), (sides[1], short)].map(|(side, usual)| log_metres + side.ln() - (SHINES * usual).ln());
+        let off = [(sides[0], long), (sides[1], short)]
+            .map(|(side, usual)| log_metres + maths::ln(side) - maths::ln(SHINES * usual));
         weight * normal(off[0], SIDE_ERROR) * normal(off[1], SIDE_ERROR)
     };
     any + SIZES.iter().map(pdf).sum::<f64>()
 }
 
 fn normal(x: f64, deviation: f64) -> f64 {
-    (-0.5 * (x / deviation).powi(2)).exp() / (deviation * std::f64::consts::TAU.sqrt())
+    maths::exp(-0.5 * maths::powi(x / deviation, 2)) / (deviation * std::f64::consts::TAU.sqrt())
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result, check_range};
 use crate::geometry::PhotoMap;
 use crate::image::Image;
+use crate::maths;
 use glam::DVec2;
 use std::ops::RangeInclusive;
 
@@ -188,6 +189,6 @@ impl Params {
 pub fn working_side(input: &Input, params: &Params) -> f64 {
     let longest = input.unwarped.width.max(input.unwarped.height) as f64;
     let side = longest.min(params.working_side as f64);
-    let pixels = params.size().element_product() * (side / longest).powi(2);
+    let pixels = params.size().element_product() * maths::powi(side / longest, 2);
     side * (MAX_WORKING_PIXELS / pixels).sqrt().min(1.0)
 }

@@ -16,6 +16,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use crate::maths;
 use glam::{DVec2, Vec3};
 
 /// The confidence of a pixel falls with the distance to the nearest segment that supports its face, from the trust in
@@ -92,7 +93,7 @@ impl Layout {
                 let face = self.hit(ray(centre)).0;
                 let on_face = support.iter().filter(|(f, _)| *f == face);
                 let distance = on_face.map(|(_, p)| p.distance(centre)).fold(f64::INFINITY, f64::min);
-                *out = (self.trust * (UNSUPPORTED + (1.0 - UNSUPPORTED) * (-distance / falloff).exp())) as f32;
+                *out = (self.trust * (UNSUPPORTED + (1.0 - UNSUPPORTED) * maths::exp(-distance / falloff))) as f32;
             }
         })?;
         let mut confidence = Image::new(width, height, 1)?;

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::image::try_collect;
 use crate::job::Job;
+use crate::maths;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -170,12 +171,12 @@ impl Evidence {
         // The support of a value is the total weight of all values within `SAME_SIDE` of it. Take the best value, drop
         // the values within `SAME_SIDE` of it, and repeat.
         let support =
-            |v: f64| values.iter().filter(|(u, _)| (u / v).ln().abs() < SAME_SIDE).map(|(_, w)| w).sum::<f64>();
+            |v: f64| values.iter().filter(|(u, _)| maths::ln(u / v).abs() < SAME_SIDE).map(|(_, w)| w).sum::<f64>();
         let mut ranked: Vec<(f64, f64)> = values.iter().map(|&(v, _)| (v, support(v))).collect();
         ranked.sort_by(|a, b| b.1.total_cmp(&a.1));
         let mut chosen: Vec<f64> = Vec::new();
         for (value, _) in ranked {
-            if chosen.len() < count && chosen.iter().all(|c| (c / value).ln().abs() > SAME_SIDE) {
+            if chosen.len() < count && chosen.iter().all(|c| maths::ln(c / value).abs() > SAME_SIDE) {
                 chosen.push(value);
             }
         }

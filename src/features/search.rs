@@ -15,6 +15,7 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::try_collect;
 use crate::job::Job;
+use crate::maths;
 use crate::simd::widest;
 use glam::{DMat3, DVec2, DVec3};
 
@@ -72,7 +73,7 @@ pub fn find(room: &RoomView, surfaces: Option<&Surfaces>, size: [usize; 2], job:
 
     let values: [Vec<f64>; 4] = std::array::from_fn(|side| {
         let mut all = evidence.candidates(side, PEAKS);
-        all.extend((0..GRID).map(|k| MIN_SIDE * RATIO.powi(k as i32)));
+        all.extend((0..GRID).map(|k| MIN_SIDE * maths::powi(RATIO, k as i32)));
         all
     });
     let coarse = Tables::new(&evidence, values, job.part(0.1, 0.4))?.best(job.part(0.4, 0.7))?;
@@ -89,8 +90,9 @@ pub fn find(room: &RoomView, surfaces: Option<&Surfaces>, size: [usize; 2], job:
     for start in starts {
         let mut top = start;
         for step in REFINEMENTS {
-            let values =
-                top.0.map(|side| (-VALUES_EITHER_SIDE..=VALUES_EITHER_SIDE).map(|k| side * step.powi(k)).collect());
+            let values = top
+                .0
+                .map(|side| (-VALUES_EITHER_SIDE..=VALUES_EITHER_SIDE).map(|k| side * maths::powi(step, k)).collect());
             let found = Tables::new(&evidence, values, job.part(0.7, 0.7))?.best(job.part(0.7, 0.7))?;
             top = found[0];
         }
@@ -106,7 +108,7 @@ pub fn find(room: &RoomView, surfaces: Option<&Surfaces>, size: [usize; 2], job:
     };
     let runner_up = runner_up(&tops).max(runner_up(&coarse));
     let lead = (best.1 - runner_up).max(0.0);
-    let evidence_weight = 1.0 - (-(evidence.len() as f64) / TRUST_SEGMENTS).exp();
+    let evidence_weight = 1.0 - maths::exp(-(evidence.len() as f64) / TRUST_SEGMENTS);
     job.report(1.0);
     Ok(Layout {
         sides: best.0,
@@ -146,7 +148,7 @@ impl Tables {
         // Each task fills one row of the table of one quadrant.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());
         let tasks: Vec<(usize, usize)> = (0..4).flat_map(|part| (0..rows[part]).map(move |row| (part, row))).collect();
-        let prior_cost = |value: f64| PRIOR_COST * (value / PRIOR_SIDE).ln().powi(2);
+        let prior_cost = |value: f64| PRIOR_COST * maths::powi(maths::ln(value / PRIOR_SIDE), 2);
         let filled = exec::map(tasks.len(), job, |task| {
             let (part, row) = tasks[task];
             let (wall, level) = (part % 2, 2 + part / 2);

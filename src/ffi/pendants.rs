@@ -21,8 +21,9 @@ use super::status::luxfer_status;
 use crate::error::{Error, Result, check_range};
 use crate::geometry::{FocalSource, Perspective};
 use crate::image::Image;
+use crate::maths;
 use crate::pendant::{self, Body, Interval, Kind, Known, Lamp, Pendants, Placing};
-use glam::{DMat3, DQuat, DVec2, DVec3, Vec3};
+use glam::{DMat3, DVec2, DVec3, Vec3};
 use std::sync::Arc;
 
 /// The kind of a lamp's body: a LUXFER_BODY_ value.
@@ -187,7 +188,7 @@ impl luxfer_pendants_params {
         let focal_error = if given == 0.0 { focal_error.min(max_error) } else { given };
         let down = camera.axes.col(1);
         let turned = shifts.into_iter().map(|shift| {
-            let turn = DQuat::from_scaled_axis(down.cross(shift));
+            let turn = maths::rotation_by(down.cross(shift));
             Perspective { axes: DMat3::from_quat(turn) * camera.axes, ..camera }
         });
         let stretched = Perspective { focal: camera.focal + focal_error, ..camera };

@@ -3,6 +3,7 @@
 use crate::error::{Error, ErrorKind, Result};
 use crate::guides::Surfaces;
 use crate::image::Image;
+use crate::maths;
 use crate::patch::Field;
 use crate::stylize::{GuideRecord, IntermediateResult, LevelReport, Output, Updater, Usage};
 use crate::warning::Warning;
@@ -63,7 +64,7 @@ impl Stylised {
         updater: Option<Updater>,
     ) -> Self {
         let report = output.report;
-        let squares = report.guide_error.data.iter().map(|&v| f64::from(v).powi(2));
+        let squares = report.guide_error.data.iter().map(|&v| maths::powi(f64::from(v), 2));
         let guide_rms = (squares.sum::<f64>() / report.guide_error.data.len() as f64).sqrt();
         Self {
             picture: Arc::new(output.image),

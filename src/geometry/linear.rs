@@ -1,6 +1,8 @@
 //! Small dense matrices: linear systems by Gaussian elimination with complete pivoting, and eigenvectors of symmetric
 //! matrices.
 
+use crate::maths;
+
 /// Solves `a x = b` by elimination with complete pivoting. `None` if the matrix is singular to working precision.
 pub fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N]) -> Option<[f64; N]> {
     let scale = a.iter().flatten().fold(0.0f64, |m, v| m.max(v.abs()));
@@ -58,9 +60,9 @@ pub fn symmetric_eigen<const N: usize>(mut a: [[f64; N]; N]) -> ([f64; N], [[f64
                     continue;
                 }
                 let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
-                let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
+                let t = theta.signum() / (theta.abs() + maths::hypot(theta, 1.0));
                 let t = if theta == 0.0 { 1.0 } else { t };
-                let c = 1.0 / t.hypot(1.0);
+                let c = 1.0 / maths::hypot(t, 1.0);
                 let s = t * c;
                 for k in 0..N {
                     let (x, y) = (a[k][p], a[k][q]);

@@ -10,6 +10,7 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::{Comparison, Image, neighbourhood, try_vec};
 use crate::job::Job;
+use crate::maths;
 use crate::scene::Camera;
 use glam::Vec3;
 
@@ -79,7 +80,7 @@ pub fn deviation(given: &Image, now: &Surfaces, before: &Surfaces, job: Job) -> 
         let given = given.pixel(x, y);
         let error = |(x, y)| {
             let exact = exact.pixel(x, y);
-            (given[0] - exact[0]).hypot(given[1] - exact[1])
+            maths::hypot(given[0] - exact[0], given[1] - exact[1])
         };
         // `f32::min` ignores NaN, so the minimum is infinite if the given motion is NaN. Such pixels are left out.
         let min_error = neighbourhood([x, y], size).map(error).fold(f32::INFINITY, f32::min);

@@ -5,6 +5,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::image::colour::luminance;
 use crate::job::Job;
+use crate::maths;
 use glam::Vec3;
 
 /// Number of passes; the distance between the averaged pixels doubles from pass to pass.
@@ -23,7 +24,7 @@ pub fn along_surfaces(light: &Image, normals: &Image, material: &Image, job: Job
     let surface = Surface { normals, material };
     let range_weight = |a: f32, b: f32| {
         let apart = (a - b) / (TOLERANCE * (0.5 * (a + b) + floor)).max(f32::MIN_POSITIVE);
-        (-apart * apart).exp()
+        maths::exp(-apart * apart)
     };
     let mut current = light.try_clone()?;
     for pass in 0..PASSES {
@@ -69,7 +70,8 @@ impl Surface<'_> {
                     if self.material.pixel(u, v) != self.material.pixel(x, y) {
                         continue;
                     }
-                    let facing = if here == Vec3::ZERO { 1.0 } else { here.dot(normal(u, v)).max(0.0).powi(16) };
+                    let facing =
+                        if here == Vec3::ZERO { 1.0 } else { maths::powi(here.dot(normal(u, v)).max(0.0), 16) };
                     let weight = weight * facing * range_weight(brightness, luminance(guide.rgb(u, v)));
                     if weight.is_finite() {
                         sum += light.rgb(u, v) * weight;

@@ -1,6 +1,7 @@
 //! Colour conversions: the sRGB transfer curve (IEC 61966-2-1), Rec.709 primaries, CIELAB with a D65 white (CIE
 //! 15:2018), and the CIEDE2000 difference (Sharma, Wu and Dalal 2005).
 
+use crate::maths;
 use crate::simd::widest;
 use glam::{DMat3, DVec3, Vec3};
 
@@ -15,13 +16,13 @@ const RGB_TO_XYZ: DMat3 = DMat3::from_cols(
 /// Decodes one sRGB value `v` to a linear value `f(v)`. The curve continues above 1, and `f(-v) = -f(v)`.
 pub fn srgb_to_linear(v: f32) -> f32 {
     let a = v.abs();
-    let linear = if a <= 0.04045 { a / 12.92 } else { ((a + 0.055) / 1.055).powf(2.4) };
+    let linear = if a <= 0.04045 { a / 12.92 } else { maths::powf((a + 0.055) / 1.055, 2.4) };
     linear.copysign(v)
 }
 
 pub fn linear_to_srgb(v: f32) -> f32 {
     let a = v.abs();
-    let encoded = if a <= 0.003_130_8 { a * 12.92 } else { 1.055 * a.powf(1.0 / 2.4) - 0.055 };
+    let encoded = if a <= 0.003_130_8 { a * 12.92 } else { 1.055 * maths::powf(a, 1.0 / 2.4) - 0.055 };
     encoded.copysign(v)
 }
 
@@ -99,8 +100,8 @@ pub fn delta_e_from(wanted: DVec3, light: DVec3) -> f64 {
 /// CIEDE2000 difference between two CIELAB colours.
 pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
     let (a, b) = (a.as_dvec3(), b.as_dvec3());
-    let chroma = |v: DVec3| v.y.hypot(v.z);
-    let pow7 = |v: f64| v.powi(7);
+    let chroma = |v: DVec3| maths::hypot(v.y, v.z);
+    let pow7 = |v: f64| maths::powi(v, 7);
     let g = {
         let c = pow7((chroma(a) + chroma(b)) / 2.0);
         0.5 * (1.0 - (c / (c + pow7(25.0))).sqrt())
@@ -108,14 +109,14 @@ pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
     let adjust = |v: DVec3| DVec3::new(v.x, v.y * (1.0 + g), v.z);
     let (a, b) = (adjust(a), adjust(b));
     let (ca, cb) = (chroma(a), chroma(b));
-    let hue = |v: DVec3| v.z.atan2(v.y).to_degrees().rem_euclid(360.0);
+    let hue = |v: DVec3| maths::atan2(v.z, v.y).to_degrees().rem_euclid(360.0);
     let (ha, hb) = (hue(a), hue(b));
 
     // Differences of lightness, chroma and hue. A colour without chroma has no hue.
     let grey = ca * cb == 0.0;
     let dh = if grey { 0.0 } else { (hb - ha + 540.0).rem_euclid(360.0) - 180.0 };
     let (dl, dc) = (b.x - a.x, cb - ca);
-    let dh_term = 2.0 * (ca * cb).sqrt() * (dh / 2.0).to_radians().sin();
+    let dh_term = 2.0 * (ca * cb).sqrt() * maths::sin((dh / 2.0).to_radians());
 
     // Means of lightness, chroma and hue. The hue is averaged along the shorter arc.
     let (l, c) = ((a.x + b.x) / 2.0, (ca + cb) / 2.0);
@@ -127,13 +128,13 @@ pub fn delta_e_2000(a: Vec3, b: Vec3) -> f64 {
     };
 
     // Weights of the three differences, and the rotation term between chroma and hue.
-    let cos = |degrees: f64| degrees.to_radians().cos();
+    let cos = |degrees: f64| maths::cos(degrees.to_radians());
     let t = 1.0 - 0.17 * cos(h - 30.0) + 0.24 * cos(2.0 * h) + 0.32 * cos(3.0 * h + 6.0) - 0.20 * cos(4.0 * h - 63.0);
     let l50 = (l - 50.0) * (l - 50.0);
     let sl = 1.0 + 0.015 * l50 / (20.0 + l50).sqrt();
     let (sc, sh) = (1.0 + 0.045 * c, 1.0 + 0.015 * c * t);
-    let rotation = 60.0 * (-((h - 275.0) / 25.0).powi(2)).exp();
-    let rt = -2.0 * (pow7(c) / (pow7(c) + pow7(25.0))).sqrt() * rotation.to_radians().sin();
+    let rotation = 60.0 * maths::exp(-maths::powi((h - 275.0) / 25.0, 2));
+    let rt = -2.0 * (pow7(c) / (pow7(c) + pow7(25.0))).sqrt() * maths::sin(rotation.to_radians());
     let (x, y, z) = (dl / sl, dc / sc, dh_term / sh);
     (x * x + y * y + z * z + rt * y * z).max(0.0).sqrt()
 }

@@ -7,6 +7,7 @@ use super::Image;
 use crate::error::{Result, check_range};
 use crate::exec;
 use crate::job::Job;
+use crate::maths;
 
 /// Dilates a mask by a disc: a pixel becomes 1 if a pixel with a mask value above 0.5 lies within `radius` pixels of
 /// it, else 0. Distances are measured between pixel centres; `radius` lies in `[0, 65536]`.
@@ -28,7 +29,7 @@ pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
         last = f32::INFINITY;
         for (y, out) in column.iter_mut().enumerate().rev() {
             last = if is_set(y) { 0.0 } else { last + 1.0 };
-            *out = out.min(last).powi(2);
+            *out = maths::powi(out.min(last), 2);
         }
     })?;
 
@@ -59,7 +60,7 @@ pub fn dilate(mask: &Image, radius: f32, job: Job) -> Result<Image> {
             }
             let near = hull.get(k).is_some_and(|&(v, _)| {
                 let d = x as f64 - v as f64;
-                d * d + f[v] <= f64::from(radius).powi(2)
+                d * d + f[v] <= maths::powi(f64::from(radius), 2)
             });
             *out = f32::from(near);
         }

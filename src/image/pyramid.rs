@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use crate::maths;
 
 /// Resizes an image, separately along x and y. Along an axis that shrinks, each new pixel is the exact average over the
 /// length that it covers. Along an axis that grows, pixels are interpolated linearly.
@@ -94,7 +95,8 @@ pub fn blur(image: &Image, sigma: f32, job: Job) -> Result<Image> {
         return image.try_clone();
     }
     let radius = (3.0 * sigma).ceil() as isize;
-    let mut kernel: Vec<f32> = (-radius..=radius).map(|i| (-0.5 * (i as f32 / sigma).powi(2)).exp()).collect();
+    let mut kernel: Vec<f32> =
+        (-radius..=radius).map(|i| maths::exp(-0.5 * maths::powi(i as f32 / sigma, 2))).collect();
     let total: f32 = kernel.iter().sum();
     kernel.iter_mut().for_each(|k| *k /= total);
     let c = image.channels;

@@ -6,6 +6,7 @@
 //! Points are in the coordinates of the luminaire, as in [`super::opening`].
 
 use super::opening::Opening;
+use crate::maths;
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -149,7 +150,7 @@ impl Faces {
     ) {
         // Enlarge the inscribed polygon to the area of the ellipse.
         let step = TAU / SIDES as f64;
-        let ring = Ring { directions, diameters, scale: (step / step.sin()).sqrt() };
+        let ring = Ring { directions, diameters, scale: (step / maths::sin(step)).sqrt() };
         let first = self.triangles.len();
         let middle = self.point(centre);
         let corners: Vec<u32> = (0..SIDES).map(|i| self.point(centre + ring.corner(i))).collect();
@@ -165,7 +166,7 @@ impl Faces {
         // Enlarge the inscribed polygon to the perimeter of the ellipse. Both then have the same mean width over all
         // directions, since the mean width of a convex curve is its perimeter / π (Cauchy).
         let half_step = PI / SIDES as f64;
-        let ring = Ring { directions, diameters, scale: half_step / half_step.sin() };
+        let ring = Ring { directions, diameters, scale: half_step / maths::sin(half_step) };
         let ends: Vec<[u32; 2]> = (0..SIDES)
             .map(|i| [-0.5, 0.5].map(|side| self.point(ring.corner(i) + directions[0] * (length * side))))
             .collect();
@@ -215,7 +216,7 @@ struct Ring {
 
 impl Ring {
     fn corner(&self, i: usize) -> DVec3 {
-        let (sine, cosine) = (TAU * i as f64 / SIDES as f64).sin_cos();
+        let (sine, cosine) = maths::sin_cos(TAU * i as f64 / SIDES as f64);
         let [_, first, second] = self.directions;
         (first * (self.diameters[0] * cosine) + second * (self.diameters[1] * sine)) * (self.scale / 2.0)
     }

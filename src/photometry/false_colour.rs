@@ -7,6 +7,7 @@
 use super::glyphs::{self, draw};
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour};
+use crate::maths;
 use glam::Vec3;
 
 /// How values map to positions on the colour scale.
@@ -59,7 +60,7 @@ pub fn colour_of(share: f64) -> Vec3 {
     // Let the chroma follow the sRGB gamut: small at both ends of the scale, largest at the reds.
     let chroma = 0.19 * (4.0 * t * (1.0 - t)).sqrt() * (1.0 - 0.25 * t) + 0.03 + 0.05 * t;
     let hue = (-75.0 + 180.0 * t).to_radians();
-    let wanted = oklab_to_linear(lightness, chroma * hue.cos(), chroma * hue.sin());
+    let wanted = oklab_to_linear(lightness, chroma * maths::cos(hue), chroma * maths::sin(hue));
     // Reduce the chroma, never the lightness, until the colour is in gamut. Bisect, since the gamut has no closed
     // form.
     if inside(wanted) {
@@ -68,10 +69,10 @@ pub fn colour_of(share: f64) -> Vec3 {
     let (mut low, mut high) = (0.0, chroma);
     for _ in 0..24 {
         let middle = 0.5 * (low + high);
-        let fits = inside(oklab_to_linear(lightness, middle * hue.cos(), middle * hue.sin()));
+        let fits = inside(oklab_to_linear(lightness, middle * maths::cos(hue), middle * maths::sin(hue)));
         if fits { low = middle } else { high = middle }
     }
-    oklab_to_linear(lightness, low * hue.cos(), low * hue.sin()).clamp(Vec3::ZERO, Vec3::ONE)
+    oklab_to_linear(lightness, low * maths::cos(hue), low * maths::sin(hue)).clamp(Vec3::ZERO, Vec3::ONE)
 }
 
 fn inside(rgb: Vec3) -> bool {
@@ -158,7 +159,7 @@ impl Range {
             Scale::Linear => (value - self.minimum) / (self.maximum - self.minimum),
             // Values of at most 0 have no logarithm: show them with the darkest colour.
             Scale::Logarithmic if value <= 0.0 => 0.0,
-            Scale::Logarithmic => (value / self.minimum).ln() / (self.maximum / self.minimum).ln(),
+            Scale::Logarithmic => maths::ln(value / self.minimum) / maths::ln(self.maximum / self.minimum),
         };
         share.clamp(0.0, 1.0)
     }
@@ -167,15 +168,15 @@ impl Range {
     /// of 1, 2 or 5 times a power of ten. A logarithmic scale has at most `count` labels: 1, 2 and 5 times the powers
     /// of ten, or the powers of ten alone, or every second or fourth power of ten.
     fn ticks(&self, count: usize) -> Vec<f64> {
-        let nice = |exponent: i32, digit: f64| digit * 10f64.powi(exponent);
-        let exponents =
-            (self.minimum.max(self.maximum / 1e6).log10().floor() as i32 - 1)..=(self.maximum.log10().ceil() as i32);
+        let nice = |exponent: i32, digit: f64| digit * maths::powi(10f64, exponent);
+        let exponents = (maths::log10(self.minimum.max(self.maximum / 1e6)).floor() as i32 - 1)
+            ..=(maths::log10(self.maximum).ceil() as i32);
         let within = |v: &f64| *v >= self.minimum * (1.0 - 1e-9) && *v <= self.maximum * (1.0 + 1e-9);
         match self.scale {
             Scale::Linear => {
                 // Choose the smallest round step that gives at most `count` intervals.
                 let wide = (self.maximum - self.minimum) / count.max(1) as f64;
-                let exponent = wide.log10().floor() as i32;
+                let exponent = maths::log10(wide).floor() as i32;
                 let steps = [(exponent, 1.0), (exponent, 2.0), (exponent, 5.0), (exponent + 1, 1.0)];
                 let step = steps.map(|(e, d)| nice(e, d)).into_iter().find(|s| *s >= wide * (1.0 - 1e-9));
                 let step = step.unwrap_or(wide);

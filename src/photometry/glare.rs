@@ -11,6 +11,7 @@
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour, try_vec};
+use crate::maths;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
@@ -80,7 +81,7 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
     let background = background((0..width * height).filter(|&i| !glares(i)), &luminance, &view);
     let sources = sources([width, height], &luminance, &glares, &view)?;
     let sum: f64 = sources.iter().map(|s| s.luminance * s.luminance * s.solid_angle / (s.position * s.position)).sum();
-    let ugr = 8.0 * (0.25 / background.max(f64::MIN_POSITIVE) * sum).log10();
+    let ugr = 8.0 * maths::log10(0.25 / background.max(f64::MIN_POSITIVE) * sum);
     Ok(Rating { ugr, background, threshold, sources })
 }
 
@@ -159,7 +160,7 @@ struct View {
 
 impl View {
     fn new(width: usize, height: usize, fov_y: f64) -> Self {
-        let pixel = 2.0 * (fov_y / 2.0).tan() / height as f64;
+        let pixel = 2.0 * maths::tan(fov_y / 2.0) / height as f64;
         Self { width, centre: [width as f64 / 2.0, height as f64 / 2.0], pixel }
     }
 
@@ -167,7 +168,7 @@ impl View {
     fn pixel(&self, i: usize) -> (DVec3, f64) {
         let x = ((i % self.width) as f64 - self.centre[0]) * self.pixel;
         let y = (self.centre[1] - (i / self.width) as f64) * self.pixel;
-        let corner = |x: f64, y: f64| (x * y / (1.0 + x * x + y * y).sqrt()).atan();
+        let corner = |x: f64, y: f64| maths::atan(x * y / (1.0 + x * x + y * y).sqrt());
         let (x1, y0) = (x + self.pixel, y - self.pixel);
         let omega = corner(x1, y) - corner(x, y) - corner(x1, y0) + corner(x, y0);
         (DVec3::new(x + self.pixel / 2.0, y - self.pixel / 2.0, -1.0).normalize(), omega)
@@ -180,15 +181,15 @@ pub fn position_index(direction: DVec3) -> f64 {
     if up >= 0.0 {
         // Guth 1963: τ is the angle from the vertical in the image plane, σ the angle from the line of sight, in
         // degrees.
-        let tau = side.abs().atan2(up).to_degrees();
+        let tau = maths::atan2(side.abs(), up).to_degrees();
         let tau = if side == 0.0 && up == 0.0 { 0.0 } else { tau };
-        let sigma = side.hypot(up).atan2(ahead).to_degrees();
-        let first = (35.2 - 0.318_89 * tau - 1.22 * (-2.0 * tau / 9.0).exp()) * 1e-3 * sigma;
+        let sigma = maths::atan2(maths::hypot(side, up), ahead).to_degrees();
+        let first = (35.2 - 0.318_89 * tau - 1.22 * maths::exp(-2.0 * tau / 9.0)) * 1e-3 * sigma;
         let second = (21.0 + 0.266_67 * tau - 0.002_963 * tau * tau) * 1e-5 * sigma * sigma;
-        (first + second).exp()
+        maths::exp(first + second)
     } else {
         // Iwata and Tokura 1997: a function of the tangent of the angle between the direction and the line of sight.
-        let ratio = side.hypot(up) / ahead.max(1e-9);
+        let ratio = maths::hypot(side, up) / ahead.max(1e-9);
         let factor = if ratio < 0.6 { 0.8 } else { 1.2 };
         (1.0 + factor * ratio).min(16.0)
     }

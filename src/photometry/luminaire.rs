@@ -2,6 +2,7 @@
 
 use super::opening::Opening;
 use crate::error::{Error, Result};
+use crate::maths;
 
 /// A luminous intensity distribution in C planes (CIE 121). `γ` runs from 0° (straight down) to 180° (straight up),
 /// and `C` turns around the vertical axis.
@@ -47,7 +48,7 @@ impl Luminaire {
     pub fn lambertian(name: &str, flux: f64, size: [f64; 3]) -> Self {
         let gammas: Vec<f64> = (0..=36).map(|i| f64::from(i) * 2.5).collect();
         let top = flux / std::f64::consts::PI;
-        let candela = gammas.iter().map(|g| if *g < 90.0 { top * g.to_radians().cos() } else { 0.0 }).collect();
+        let candela = gammas.iter().map(|g| if *g < 90.0 { top * maths::cos(g.to_radians()) } else { 0.0 }).collect();
         Self {
             name: name.into(),
             manufacturer: String::new(),
@@ -180,7 +181,7 @@ impl Luminaire {
 /// Computes `∫ I(γ) sin γ dγ` between two angles in radians, for `I` linear between them.
 fn zone(intensity: &[f64], [a, b]: [f64; 2]) -> f64 {
     let slope = (intensity[1] - intensity[0]) / (b - a);
-    let at = |g: f64, i: f64| slope * g.sin() - i * g.cos();
+    let at = |g: f64, i: f64| slope * maths::sin(g) - i * maths::cos(g);
     at(b, intensity[1]) - at(a, intensity[0])
 }
 

@@ -4,6 +4,7 @@
 //! Points are in the luminaire's own coordinates, in metres from the centre of the opening: x along C = 0, y along C =
 //! 90, z along the axis towards γ = 0.
 
+use crate::maths;
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_4;
 
@@ -52,8 +53,8 @@ impl Face {
         let (x, y) = match self.is_round {
             false => (x, y),
             true if x == 0.0 && y == 0.0 => (0.0, 0.0),
-            true if x.abs() > y.abs() => (x * (FRAC_PI_4 * y / x).cos(), x * (FRAC_PI_4 * y / x).sin()),
-            true => (y * (FRAC_PI_4 * x / y).sin(), y * (FRAC_PI_4 * x / y).cos()),
+            true if x.abs() > y.abs() => (x * maths::cos(FRAC_PI_4 * y / x), x * maths::sin(FRAC_PI_4 * y / x)),
+            true => (y * maths::sin(FRAC_PI_4 * x / y), y * maths::cos(FRAC_PI_4 * x / y)),
         };
         self.centre + (self.sides[0] * x + self.sides[1] * y) / 2.0
     }
@@ -116,7 +117,7 @@ impl Opening {
                 size.x * size.y * u.z + along_x * size.y * u.x + along_y * size.x * u.y
             }
             Self::Cylinder { axis, length, diameters: [a, b] } => {
-                let width = (a * u[(axis + 2) % 3]).hypot(b * u[(axis + 1) % 3]);
+                let width = maths::hypot(a * u[(axis + 2) % 3], b * u[(axis + 1) % 3]);
                 FRAC_PI_4 * a * b * u[axis] + length * width
             }
             Self::Ellipsoid(d) => FRAC_PI_4 * DVec3::new(d.y * d.z * u.x, d.z * d.x * u.y, d.x * d.y * u.z).length(),
@@ -136,7 +137,7 @@ impl Opening {
             Self::Cylinder { axis, length, diameters: [a, b] } => {
                 let [p, q] = [point[(axis + 1) % 3], point[(axis + 2) % 3]];
                 let [a, b] = [a / 2.0 + CONTACT, b / 2.0 + CONTACT];
-                within(point[axis], length) && (p / a).powi(2) + (q / b).powi(2) <= 1.0
+                within(point[axis], length) && maths::powi(p / a, 2) + maths::powi(q / b, 2) <= 1.0
             }
             Self::Ellipsoid(diameters) => (point / (diameters / 2.0 + CONTACT)).length() <= 1.0,
         }
@@ -168,13 +169,13 @@ fn cylinder(axis: usize, length: f64, [a, b]: [f64; 2], direction: DVec3) -> Vec
     let end = along * (length / 2.0 * direction[axis].signum());
     let mut faces = vec![Face { centre: end, sides: [first * a, second * b], is_round: true }];
     let (u, v) = (direction.dot(first), direction.dot(second));
-    let across = u.hypot(v);
+    let across = maths::hypot(u, v);
     if length > 0.0 && across > 0.0 {
         // Compute the width of the elliptic cross section as seen along `direction`, and the point of the ellipse
         // nearest to the observer.
         let (u, v) = (u / across, v / across);
-        let width = (a * v).hypot(b * u);
-        let depth = (a * u).hypot(b * v).max(f64::MIN_POSITIVE);
+        let width = maths::hypot(a * v, b * u);
+        let depth = maths::hypot(a * u, b * v).max(f64::MIN_POSITIVE);
         let nearest = (first * (a * a * u) + second * (b * b * v)) / (2.0 * depth);
         let tangent = second * u - first * v;
         // Place a rectangle of this width, parallel to the axis, on the near side of the cylinder.

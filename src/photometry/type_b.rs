@@ -10,6 +10,7 @@
 
 use crate::error::{Error, Result};
 use crate::image::try_vec;
+use crate::maths;
 
 /// Minimum and maximum of the step of γ and C, in degrees. Within this range, the step is the smallest step of the
 /// file's angles. [convention]
@@ -78,8 +79,8 @@ fn check(angles: &[f64], name: &str, most: f64) -> Result<()> {
 
 /// Returns V and H in degrees of a direction of type C.
 fn angles(c: f64, gamma: f64) -> [f64; 2] {
-    let ((sin_c, cos_c), (sine, cosine)) = (c.to_radians().sin_cos(), gamma.to_radians().sin_cos());
-    [(sine * cos_c).atan2(cosine).to_degrees(), -(sine * sin_c).clamp(-1.0, 1.0).asin().to_degrees()]
+    let ((sin_c, cos_c), (sine, cosine)) = (maths::sin_cos(c.to_radians()), maths::sin_cos(gamma.to_radians()));
+    [maths::atan2(sine * cos_c, cosine).to_degrees(), -maths::asin((sine * sin_c).clamp(-1.0, 1.0)).to_degrees()]
 }
 
 /// Returns the intensity at V and H.

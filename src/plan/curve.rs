@@ -1,6 +1,7 @@
 //! Curves of error against time, and the allocation of time to several stages along their curves.
 
 use super::Goal;
+use crate::maths;
 
 /// The error of a stage as a function of its time.
 #[derive(Clone, Copy, Debug)]
@@ -43,11 +44,11 @@ impl Curve {
         if a <= 0.0 || b <= 0.0 {
             return b.max(0.0);
         }
-        let power = ((a / b).ln() / (t / s).ln()).clamp(POWERS[0], POWERS[1]);
+        let power = (maths::ln(a / b) / maths::ln(t / s)).clamp(POWERS[0], POWERS[1]);
         // error² = middle error² · (middle time / time)^power up to the last point. From there on the error falls with
         // the limited exponent.
         let [known, beyond] = [seconds.min(last[0]), seconds.max(last[0])];
-        middle[1] * (middle[0] / known).powf(power) * (last[0] / beyond).powf(power.min(MAX_EXTRAPOLATED))
+        middle[1] * maths::powf(middle[0] / known, power) * maths::powf(last[0] / beyond, power.min(MAX_EXTRAPOLATED))
     }
 
     /// Returns by how much the squared error falls per second during the allocation step that begins at `seconds`; 0

@@ -5,6 +5,7 @@ use super::curve::Curve;
 use super::{Clock, Expected, Goal, MAX_COST, overtime, timed};
 use crate::error::Result;
 use crate::job::Job;
+use crate::maths;
 use crate::relight;
 use crate::render::World;
 use glam::Vec3;
@@ -65,7 +66,7 @@ impl Strength {
             let part = job.part(k as f64 / TRIALS as f64, (k + 1) as f64 / TRIALS as f64);
             let (taken, solution) = timed(clock, || trial(TRIAL_SEED + 1 + k, target, part));
             seconds += taken;
-            squares += solution?.error().powi(2);
+            squares += maths::powi(solution?.error(), 2);
         }
         let trials = TRIALS as f64;
         Ok(Self { seconds_per_path: seconds / trials / f64::from(TRIAL), half_width: (squares / trials).sqrt() })
@@ -78,7 +79,7 @@ impl Strength {
         Curve::of_independent(
             min_seconds,
             max_seconds,
-            Self::contribution(self.half_width(SOLUTION_PATHS[0]), contrast).powi(2),
+            maths::powi(Self::contribution(self.half_width(SOLUTION_PATHS[0]), contrast), 2),
         )
     }
 

@@ -7,6 +7,7 @@ use super::strength::Strength;
 use super::{Clock, Expected, Goal, timed};
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
+use crate::maths;
 use crate::relight;
 use crate::render::{self, World};
 use crate::transfer::{LitScene, Stage, Transfer};
@@ -53,7 +54,7 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     let seconds = allocate(&[strength.curve(contrast), picture.curve()], light);
     let (relight, mut solving) = strength.plan(&transfer.params.relight, goal, seconds[0]);
     let Rendering { params: render, expected: mut rendering } = picture.plan(&transfer.params.render, goal, seconds[1]);
-    let error = Strength::contribution(solving.error, contrast).hypot(rendering.error);
+    let error = maths::hypot(Strength::contribution(solving.error, contrast), rendering.error);
     solving.seconds += building;
     rendering.seconds += building;
     let whole = Expected { seconds: solving.seconds + rendering.seconds, error };

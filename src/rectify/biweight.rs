@@ -2,6 +2,7 @@
 //! of a vanishing point from them. Residuals are in units of the biweight's limit. Beyond the limit the weight is 0, so
 //! residuals with `|r| ≥ 1` are left out of all means.
 
+use crate::maths;
 use std::sync::LazyLock;
 
 /// Means over the residuals `r` with `|r| < 1`, for normally distributed residuals of known variance. As the variance
@@ -54,10 +55,10 @@ fn integrate(deviation: f64) -> Biweight {
     let far = (8.0 * deviation).min(1.0);
     let mut sums = [0.0; 4];
     for step in 0..STEPS {
-        let square = ((step as f64 + 0.5) / STEPS as f64 * far).powi(2);
-        let gaussian = (-0.5 * square / variance).exp();
+        let square = maths::powi((step as f64 + 0.5) / STEPS as f64 * far, 2);
+        let gaussian = maths::exp(-0.5 * square / variance);
         let agreement = 1.0 - square;
-        let values = [1.0, square, agreement * (1.0 - 5.0 * square), square * agreement.powi(4)];
+        let values = [1.0, square, agreement * (1.0 - 5.0 * square), square * maths::powi(agreement, 4)];
         sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += gaussian * value);
     }
     let [all, square, slope, influence] = sums;

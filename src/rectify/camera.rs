@@ -8,6 +8,7 @@ use super::vanishing::{Vanishing, VanishingPoint};
 use crate::geometry::linear::symmetric_eigen;
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::geometry::{FocalSource, Perspective};
+use crate::maths;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Standard deviation, in radians, of an axis that no line determines and only a convention fixes (for instance, that
@@ -76,7 +77,7 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let vanishing_points = std::array::from_fn(|axis| match named[axis] {
         Some(k) => orthogonal[k].clone(),
         None => {
-            let error = named.iter().flatten().map(|&k| orthogonal[k].error.powi(2)).sum::<f64>().sqrt();
+            let error = named.iter().flatten().map(|&k| maths::powi(orthogonal[k].error, 2)).sum::<f64>().sqrt();
             let error = if named.iter().flatten().count() == 2 { error } else { FREE_ERROR };
             VanishingPoint {
                 point: perspective.vanishing_point(axis).normalize(),
@@ -110,8 +111,8 @@ fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>,
         (None, Some((log_focal, spread))) => {
             // Combine the estimate with the prior, both weighted by inverse variance. The prior thus decides only
             // where the points constrain the focal length weakly.
-            let (a, b) = (spread.powi(-2), expected.spread.powi(-2));
-            let focal = ((log_focal * a + expected.focal.ln() * b) / (a + b)).exp();
+            let (a, b) = (maths::powi(spread, -2), maths::powi(expected.spread, -2));
+            let focal = maths::exp((log_focal * a + maths::ln(expected.focal) * b) / (a + b));
             let source = if a > b { FocalSource::VanishingPoints } else { expected.source };
             Focal { focal, spread: (a + b).sqrt().recip(), source }
         }
@@ -171,7 +172,7 @@ fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) ->
         }
     }
     (deviation.is_finite() && FOCAL_CHANGE.contains(&(square.sqrt() / start)))
-        .then(|| (square.ln() / 2.0, deviation.max(1e-9)))
+        .then(|| (maths::ln(square) / 2.0, deviation.max(1e-9)))
 }
 
 /// Returns the rotation nearest to the given directions, each weighted by its certainty (Wahba's problem, solved by

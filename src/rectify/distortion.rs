@@ -15,6 +15,7 @@ use super::edge_lines::{self, Edge};
 use super::gradient::{Gradients, SIGMA};
 use crate::geometry::Segment;
 use crate::geometry::robust::weighted_median;
+use crate::maths;
 use glam::DVec2;
 
 /// Radial distortion of a lens, expressed as displacement in the corners of the image.
@@ -118,7 +119,7 @@ impl LineEstimate {
         let (bend, variance) = parabola(&along([edge.a, edge.b], &edge.points))?;
         let leverage = distance / (half_diagonal * half_diagonal);
         let weight = leverage * leverage / variance;
-        let squared_offset = (distance / half_diagonal).powi(2);
+        let squared_offset = maths::powi(distance / half_diagonal, 2);
         (weight > 0.0).then_some(Self { corner: bend / leverage, weight, squared_offset })
     }
 }
@@ -202,15 +203,15 @@ fn parabola(points: &[DVec2]) -> Option<(f64, f64)> {
     }
     let mean = points.iter().sum::<DVec2>() / count;
     let first = |p: &DVec2| p.x - mean.x;
-    let sums = points.iter().fold((0.0, 0.0), |(s, c), p| (s + first(p).powi(2), c + first(p).powi(3)));
-    let second = |p: &DVec2| first(p).powi(2) - sums.1 / sums.0 * first(p) - sums.0 / count;
+    let sums = points.iter().fold((0.0, 0.0), |(s, c), p| (s + maths::powi(first(p), 2), c + maths::powi(first(p), 3)));
+    let second = |p: &DVec2| maths::powi(first(p), 2) - sums.1 / sums.0 * first(p) - sums.0 / count;
     let part = |of: &dyn Fn(&DVec2) -> f64| {
-        let (dot, square) = points.iter().fold((0.0, 0.0), |(d, s), p| (d + of(p) * p.y, s + of(p).powi(2)));
+        let (dot, square) = points.iter().fold((0.0, 0.0), |(d, s), p| (d + of(p) * p.y, s + maths::powi(of(p), 2)));
         (dot / square, square)
     };
     let ((tilt, _), (bend, square)) = (part(&first), part(&second));
     let residual = |p: &DVec2| p.y - mean.y - tilt * first(p) - bend * second(p);
-    let noise = points.iter().map(|p| residual(p).powi(2)).sum::<f64>() / (count - 3.0);
+    let noise = points.iter().map(|p| maths::powi(residual(p), 2)).sum::<f64>() / (count - 3.0);
     // Gaussian smoothing correlates neighbouring samples. `shared` is their correlation length in pixels: the number of
     // samples that count as one.
     let shared = 2.0 * std::f64::consts::PI.sqrt() * f64::from(SIGMA);
@@ -243,15 +244,15 @@ fn m_estimate_step(estimates: &[LineEstimate], corner: f64) -> Distortion {
     for s in estimates {
         let off = s.at_corner(corner) - corner;
         let residual = off * s.weight.sqrt() / limit;
-        let agreement = (1.0 - residual * residual).max(0.0).powi(2);
+        let agreement = maths::powi((1.0 - residual * residual).max(0.0), 2);
         weights += agreement * s.weight;
         sum += agreement * s.weight * s.at_corner(corner);
-        squares += (agreement * s.weight * off).powi(2).max(agreement.powi(2) * s.weight);
+        squares += maths::powi(agreement * s.weight * off, 2).max(maths::powi(agreement, 2) * s.weight);
         segments += usize::from(agreement > 0.0);
     }
     Distortion {
         corner: sum / weights,
-        error: ((SEGMENTS_PER_LINE * squares).sqrt() / weights).hypot(MODEL_ERROR),
+        error: maths::hypot((SEGMENTS_PER_LINE * squares).sqrt() / weights, MODEL_ERROR),
         segments,
     }
 }

@@ -2,6 +2,7 @@
 
 use super::params::Params;
 use crate::geometry::FocalSource;
+use crate::maths;
 
 /// Prior of the focal length over photos of rooms. `USUAL_FOCAL_PER_WIDTH`: median of the focal length as a share of
 /// the image width; in portrait photos the width is the shorter side. `USUAL_SPREAD`: standard deviation of the
@@ -30,6 +31,6 @@ impl FocalPrior {
 
     /// Returns the prior with the logarithm of its focal length increased by the given number of standard deviations.
     pub fn moved(self, deviations: f64) -> Self {
-        Self { focal: self.focal * (self.spread * deviations).exp(), ..self }
+        Self { focal: self.focal * maths::exp(self.spread * deviations), ..self }
     }
 }

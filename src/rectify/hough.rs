@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::geometry::Segment;
 use crate::image::try_vec;
 use crate::job::Job;
+use crate::maths;
 use glam::DVec2;
 use std::f64::consts::PI;
 
@@ -48,14 +49,14 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
     let max_rho = centre.length().ceil() as usize + 1;
     let rows = 2 * max_rho + 1;
     let mut votes = try_vec(ANGLES * rows, 0u32)?;
-    let table: Vec<DVec2> = (0..ANGLES).map(|k| DVec2::from_angle(k as f64 * PI / ANGLES as f64)).collect();
+    let table: Vec<DVec2> = (0..ANGLES).map(|k| maths::direction_at(k as f64 * PI / ANGLES as f64)).collect();
     let half_band = (band / PI * ANGLES as f64).round() as isize;
     for (done, &i) in edges.iter().enumerate() {
         if done % 16_384 == 0 {
             job.check()?;
         }
         let [dx, dy] = gradients.derivative[i as usize];
-        let direction = (f64::from(dy).atan2(f64::from(dx)) / PI * ANGLES as f64).round() as isize;
+        let direction = (maths::atan2(f64::from(dy), f64::from(dx)) / PI * ANGLES as f64).round() as isize;
         let p = position(width, i) - centre;
         for k in direction - half_band..=direction + half_band {
             let k = k.rem_euclid(ANGLES as isize) as usize;
@@ -107,14 +108,14 @@ pub fn peaks(gradients: &Gradients, edges: &[u32], band: f64, job: Job) -> Resul
 /// squares. Lines with more votes come first. An edge pixel counts only for the first line of which it covers a piece.
 pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, job: Job) -> Result<Vec<Segment>> {
     let centre = DVec2::new(gradients.width as f64, gradients.height as f64) / 2.0;
-    let min_agreement = (2.0 * band).max(5f64.to_radians()).cos();
+    let min_agreement = maths::cos((2.0 * band).max(5f64.to_radians()));
     let min_length = (MIN_LENGTH_SHARE * centre.length()).max(MIN_LENGTH);
     let mut taken = try_vec(edges.len(), false)?;
     let mut segments = Vec::new();
     for (done, peak) in peaks.iter().enumerate() {
         job.check()?;
         job.report(done as f64 / peaks.len() as f64);
-        let normal = DVec2::from_angle(peak.theta);
+        let normal = maths::direction_at(peak.theta);
         let mut support: Vec<(f64, usize)> = Vec::new();
         for (slot, &i) in edges.iter().enumerate().filter(|(slot, _)| !taken[*slot]) {
             let p = position(gradients.width, i) - centre;
@@ -146,7 +147,7 @@ pub fn pieces(gradients: &Gradients, edges: &[u32], peaks: &[Peak], band: f64, j
 pub fn whole_lines(gradients: &Gradients, peaks: &[Peak]) -> Vec<Segment> {
     let size = DVec2::new(gradients.width as f64, gradients.height as f64);
     let line = |peak: &Peak| {
-        let normal = DVec2::from_angle(peak.theta);
+        let normal = maths::direction_at(peak.theta);
         let foot = size / 2.0 + normal * peak.rho;
         super::metric::visible(&Segment { a: foot, b: foot + normal.perp() }, size.x, size.y)
     };
@@ -178,7 +179,7 @@ fn fit(points: &[DVec2]) -> Segment {
     for d in points.iter().map(|&p| p - centre) {
         (xx, xy, yy) = (xx + d.x * d.x, xy + d.x * d.y, yy + d.y * d.y);
     }
-    let direction = DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy));
+    let direction = maths::direction_at(0.5 * maths::atan2(2.0 * xy, xx - yy));
     let along = |p: DVec2| centre + direction * direction.dot(p - centre);
     Segment { a: along(points[0]), b: along(points[points.len() - 1]) }
 }

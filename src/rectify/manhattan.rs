@@ -8,8 +8,9 @@ use crate::error::Result;
 use crate::exec;
 use crate::geometry::linear;
 use crate::job::Job;
+use crate::maths;
 use crate::rng::Rng;
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DVec3};
 
 /// Focal lengths tried in addition to the focal lengths that pairs of candidates imply, in units of half the longer
 /// image side: angles of view from 20 to 110 degrees. The bench prints the accuracy of the vanishing points for an
@@ -210,13 +211,13 @@ fn score(lines: &[WeightedLine], triplet: &Triplet) -> f64 {
         explained += e.weight * points.iter().map(|&p| e.agreement(p)).fold(0.0, f64::max);
         total += e.weight;
     }
-    let unusual = (triplet.focal / USUAL_FOCAL).ln() / SEARCH_SPREAD;
+    let unusual = maths::ln(triplet.focal / USUAL_FOCAL) / SEARCH_SPREAD;
     explained / total - FOCAL_COST * unusual * unusual
 }
 
 fn similar(a: &Triplet, b: &Triplet) -> bool {
     let close = |d: DVec3| (0..3).any(|k| b.axes.col(k).dot(d).abs() > MIN_AXIS_COSINE);
-    (0..3).all(|k| close(a.axes.col(k))) && (a.focal / b.focal).ln().abs() < MAX_FOCAL_LOG
+    (0..3).all(|k| close(a.axes.col(k))) && maths::ln(a.focal / b.focal).abs() < MAX_FOCAL_LOG
 }
 
 /// Refines the axes and the focal length of a roughly known camera, so that more lines run to its vanishing points.
@@ -269,17 +270,17 @@ fn refine_jointly(lines: &[WeightedLine], start: Triplet, focal: Option<f64>) ->
         let firmness = if focal.is_some() { FIXED_WEIGHT } else { 0.01 / (SEARCH_SPREAD * SEARCH_SPREAD) } * scale;
         normal[3][3] += firmness;
         if focal.is_none() {
-            right[3] -= firmness * (current.focal / USUAL_FOCAL).ln();
+            right[3] -= firmness * maths::ln(current.focal / USUAL_FOCAL);
         }
         for (r, row) in normal.iter_mut().enumerate() {
             row[r] += 1e-9 * scale;
         }
         let Some(step) = linear::solve(normal, right) else { break };
-        let rotation = DMat3::from_quat(DQuat::from_scaled_axis(DVec3::new(step[0], step[1], step[2])));
+        let rotation = DMat3::from_quat(maths::rotation_by(DVec3::new(step[0], step[1], step[2])));
         let focal = if focal.is_some() {
             current.focal
         } else {
-            (current.focal * step[3].exp()).clamp(FOCAL_RANGE[0], FOCAL_RANGE[1])
+            (current.focal * maths::exp(step[3])).clamp(FOCAL_RANGE[0], FOCAL_RANGE[1])
         };
         current = Triplet { axes: rotation * current.axes, focal, score: 0.0 };
         current.score = score(lines, &current);

@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::geometry::{Homography, Perspective};
 use crate::image::{Image, try_collect};
+use crate::maths;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Maximum number of mask pixels used; larger masks are subsampled evenly.
@@ -50,7 +51,7 @@ impl Plane {
     /// `√det J`, where J is the Jacobian from pixels to plane coordinates. For an ideal lens, det J is
     /// 1 / (f² (n · ray)³). `ray` has z = 1, n is the normal of the plane, and f the focal length in pixels.
     pub fn pixel_side(&self, pixel: DVec2) -> f64 {
-        let side = self.normal.dot(self.perspective.ray(pixel)).powf(-1.5) / self.perspective.focal;
+        let side = maths::powf(self.normal.dot(self.perspective.ray(pixel)), -1.5) / self.perspective.focal;
         let lens = self.perspective.lens();
         if lens.is_none() { side } else { side * lens.derivative(pixel).determinant().sqrt() }
     }
@@ -89,7 +90,7 @@ pub fn choose(view: &View, mask: &Image, pixels: &[DVec2], axes: Option<[usize; 
              choose other axes, or mark a plane that the photo shows less obliquely",
             pair[0],
             pair[1],
-            MIN_INCIDENCE.asin().to_degrees()
+            maths::asin(MIN_INCIDENCE).to_degrees()
         )));
     }
     Ok(plane)
@@ -147,7 +148,7 @@ fn best_pair(view: &View, mask: &Image, pixels: &[DVec2]) -> [usize; 2] {
         // Favour a ceiling. The vertical axis points down, so the mask is on a ceiling if nearly all its rays point
         // against this axis.
         let ceiling = if third == VERTICAL && share_ahead < MAX_CEILING_SHARE { CEILING_PREFERENCE } else { 1.0 };
-        one_sided.powi(4) * lines * ceiling
+        maths::powi(one_sided, 4) * lines * ceiling
     };
     let pairs = [[HORIZONTAL_A, HORIZONTAL_B], [HORIZONTAL_A, VERTICAL], [VERTICAL, HORIZONTAL_B]];
     pairs.into_iter().rev().max_by(|&a, &b| value(a).total_cmp(&value(b))).unwrap_or(pairs[0])

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::geometry::Segment;
 use crate::image::{try_collect, try_vec};
 use crate::job::Job;
+use crate::maths;
 use glam::DVec2;
 
 /// Pixels with a smaller gradient magnitude are ignored. The unit is encoded luma per pixel; the value corresponds to
@@ -32,7 +33,7 @@ pub fn detect(gradients: &Gradients, job: Job) -> Result<Vec<Segment>> {
     let seeds = by_falling_magnitude(magnitude)?;
     let used = try_collect(magnitude.iter().map(|m| !(*m >= MIN_GRADIENT)))?;
     let mut grower = Grower { gradients, used, region: Vec::new() };
-    let log_tests = 2.5 * ((width * height) as f64).ln();
+    let log_tests = 2.5 * maths::ln((width * height) as f64);
     let mut segments = Vec::new();
     for (done, &seed) in seeds.iter().enumerate() {
         if done % 8192 == 0 {
@@ -118,7 +119,7 @@ impl FittedSegment {
     fn log_surprise(&self) -> f64 {
         let share = self.pixel_density().min(1.0 - 1e-9);
         let chance = TOLERANCE / std::f64::consts::PI;
-        let divergence = share * (share / chance).ln() + (1.0 - share) * ((1.0 - share) / (1.0 - chance)).ln();
+        let divergence = share * maths::ln(share / chance) + (1.0 - share) * maths::ln((1.0 - share) / (1.0 - chance));
         if share > chance { self.pixels as f64 / share * divergence } else { 0.0 }
     }
 }
@@ -161,7 +162,7 @@ impl Grower<'_> {
     /// layers before it, so that the result does not depend on the order of pixels.
     fn grow(&mut self, seed: u32, tolerance: f64) {
         let Gradients { width, derivative, magnitude, .. } = self.gradients;
-        let min_cos = tolerance.cos() as f32;
+        let min_cos = maths::cos(tolerance) as f32;
         self.region.clear();
         self.region.push(Pixel::new(*width, seed));
         self.used[seed as usize] = true;
@@ -235,7 +236,7 @@ impl Grower<'_> {
             squares[1] / mass - mean.x * mean.y,
             squares[2] / mass - mean.y * mean.y,
         ];
-        (mass > 0.0).then(|| (origin + mean, DVec2::from_angle(0.5 * (2.0 * xy).atan2(xx - yy))))
+        (mass > 0.0).then(|| (origin + mean, maths::direction_at(0.5 * maths::atan2(2.0 * xy, xx - yy))))
     }
 
     /// Returns the minimum and maximum coordinates of the region relative to `centre`: x along the direction, y across

@@ -7,6 +7,7 @@
 use super::biweight::Biweight;
 use super::metric::Line;
 use crate::geometry::{Segment, linear::symmetric_eigen};
+use crate::maths;
 use glam::{DMat3, DVec2, DVec3};
 
 /// Limit of the distance `d` of a segment's endpoints from the line through its midpoint and a vanishing point. The
@@ -95,7 +96,7 @@ pub struct WeightedLine {
 
 impl WeightedLine {
     fn new(line: Line) -> Self {
-        let stiffness = (line.half / ENDPOINT_LIMIT).powi(2) + SINE_LIMIT.powi(-2);
+        let stiffness = maths::powi(line.half / ENDPOINT_LIMIT, 2) + maths::powi(SINE_LIMIT, -2);
         Self { line, weight: 2.0 * line.half, stiffness }
     }
 
@@ -179,7 +180,7 @@ pub fn refine_near(lines: &[WeightedLine], start: DVec3, focal: f64, expected: &
     let own = covariance(lines, start, focal)?;
     // Up to a factor, the normal matrix of the lines is the inverse of their covariance. Scale the priors by this
     // factor.
-    let unit = rms_angle(&own.of_direction).powi(2) / own.inverse_trace;
+    let unit = maths::powi(rms_angle(&own.of_direction), 2) / own.inverse_trace;
     let mut prior = ZERO_MATRIX;
     for RightAngle { to, variance } in expected {
         add_square(&mut prior, *to, unit / variance);
@@ -233,13 +234,13 @@ struct Row {
 
 fn row(weighted: &WeightedLine, direction: DVec3, focal: f64) -> Option<Row> {
     let p = project(direction, focal);
-    let bisquare = weighted.agreement(p).powi(2);
+    let bisquare = maths::powi(weighted.agreement(p), 2);
     let distance = (p.truncate() - weighted.line.centre * p.z).length();
     if !(bisquare > 0.0 && distance > 1e-9) {
         return None;
     }
     let (l, half) = (weighted.line.line, weighted.line.half);
-    let nearness = (half * p.z / distance).powi(2);
+    let nearness = maths::powi(half * p.z / distance, 2);
     // The factor stiffness / (1 + nearness) is about the inverse variance of the sine, as if endpoint noise were the
     // only error. The factor √length favours long segments, because they are rarely false detections.
     let base_weight = weighted.weight.sqrt() * weighted.stiffness / (1.0 + nearness);

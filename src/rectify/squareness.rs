@@ -7,6 +7,7 @@
 
 use super::focal::FocalPrior;
 use super::sphere::Refined;
+use crate::maths;
 use glam::DVec3;
 
 /// How far the angle between two directions deviates from a right angle.
@@ -63,8 +64,8 @@ pub fn measure(
         a.zip(b).map(|(a, b)| Pair::new(beside, a, b))
     };
     let pairs = [0, 1, 2].map(pair);
-    let weight = expected.spread.powi(-2);
-    let prior = [weight, (expected.focal / focal).ln() * weight];
+    let weight = maths::powi(expected.spread, -2);
+    let prior = [weight, maths::ln(expected.focal / focal) * weight];
     pairs.each_ref().map(|pair| {
         let pair = pair.as_ref()?;
         let [growth, variance] = if is_given {
@@ -77,6 +78,6 @@ pub fn measure(
         };
         let cosine = (pair.cosine + pair.slope * growth).clamp(-1.0, 1.0);
         let error = (pair.variance + pair.slope * pair.slope * variance).sqrt();
-        Some(Squareness { angle: -cosine.asin(), error })
+        Some(Squareness { angle: -maths::asin(cosine), error })
     })
 }

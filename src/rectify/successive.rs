@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::geometry::Segment;
 use crate::job::Job;
+use crate::maths;
 use crate::rng::Rng;
 use glam::{DVec2, DVec3};
 
@@ -88,7 +89,7 @@ pub fn search(
 /// `alpha = 1` is at infinity.
 pub fn from_alpha(alpha: f64, theta: f64, origin: DVec2) -> DVec3 {
     let w = 1.0 - alpha;
-    (DVec2::from_angle(theta) * alpha + origin * w).extend(w)
+    (maths::direction_at(theta) * alpha + origin * w).extend(w)
 }
 
 /// Returns the polar coordinates of a homogeneous point about an origin: `alpha = 1 - 1 / (rho + 1)` and the angle
@@ -96,7 +97,7 @@ pub fn from_alpha(alpha: f64, theta: f64, origin: DVec2) -> DVec3 {
 pub fn to_alpha(p: DVec3, origin: DVec2) -> (f64, f64) {
     let away = (p.truncate() - origin * p.z) * if p.z < 0.0 { -1.0 } else { 1.0 };
     let rho = away.length();
-    (rho / (rho + p.z.abs()), away.to_angle())
+    (rho / (rho + p.z.abs()), maths::angle_of(away))
 }
 
 /// Minimises the loss by a pattern search over `(alpha, theta)`. The steps of alpha become smaller as alpha approaches

@@ -9,7 +9,8 @@ use crate::geometry::linear::symmetric_eigen;
 use crate::geometry::{Homography, Perspective, PhotoMap};
 use crate::image::Image;
 use crate::job::Job;
-use glam::{DMat3, DQuat, DVec2, DVec3};
+use crate::maths;
+use glam::{DMat3, DVec2, DVec3};
 
 pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, job: Job) -> Result<Unwarped> {
     photo.check_same_size("photo", mask, "mask")?;
@@ -88,7 +89,7 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
         rectified(&plane.seen_by(turn, camera.focal * found.focal / nominal.focal), corners)
     };
     let aspect = |c: &[DVec2; 4]| {
-        ((c[1].distance(c[0]) + c[2].distance(c[3])) / (c[3].distance(c[0]) + c[2].distance(c[1]))).ln()
+        maths::ln((c[1].distance(c[0]) + c[2].distance(c[3])) / (c[3].distance(c[0]) + c[2].distance(c[1])))
     };
 
     let mut moved: Vec<[DVec2; 4]> = Vec::new();
@@ -105,7 +106,7 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
     // of an axis fixed by convention.
     if points.iter().filter(|p| p.support > 0).count() < 2 {
         for axis in (0..3).filter(|&k| points[k].support > 0).map(|k| camera.axes.col(k)) {
-            let turn = DMat3::from_quat(DQuat::from_axis_angle(axis, FREE_ERROR * SMALL));
+            let turn = DMat3::from_quat(maths::rotation_about(axis, FREE_ERROR * SMALL));
             moved.push(rectified(&plane.seen_by(turn, camera.focal), corners));
         }
     }
@@ -115,9 +116,9 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
     let mut aspect_variance = 0.0;
     for corners in &moved {
         for (square, (a, b)) in squares.iter_mut().zip(corners.iter().zip(&still)) {
-            *square += (a.distance(*b) / (SMALL * pixel_size)).powi(2);
+            *square += maths::powi(a.distance(*b) / (SMALL * pixel_size), 2);
         }
-        aspect_variance += ((aspect(corners) - aspect(&still)) / SMALL).powi(2);
+        aspect_variance += maths::powi((aspect(corners) - aspect(&still)) / SMALL, 2);
     }
     // A confidence of one half corresponds to a relative standard deviation of 10 % of the aspect ratio. [convention]
     Uncertainty { aspect_confidence: 1.0 / (1.0 + aspect_variance / 0.01), corner_error: squares.map(f64::sqrt) }

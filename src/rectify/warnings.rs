@@ -3,6 +3,7 @@
 use super::focal::USUAL_SPREAD;
 use super::{Unwarped, View};
 use crate::geometry::FocalSource;
+use crate::maths;
 use crate::warning::{Code, Warning, percent};
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -167,7 +168,7 @@ fn near_horizon(footprints: &[Footprint]) -> Option<Warning> {
         Code::PlaneNearHorizon,
         median,
         MIN_INCIDENCE,
-        || format!("the camera sees half of the plane at less than {:.1} degrees", median.asin().to_degrees()),
+        || format!("the camera sees half of the plane at less than {:.1} degrees", maths::asin(median).to_degrees()),
         "use a photo that looks more towards the plane, or check that its mask and axes are right",
     )
     .map(|warning| warning.at(by_incidence.first().map(|f| f.place)))

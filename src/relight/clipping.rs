@@ -11,6 +11,7 @@
 //!
 //! If all channels of a pixel are clipped, the pixel keeps its values, which are lower bounds.
 
+use crate::maths;
 use glam::{BVec3, DVec3, Vec3};
 
 /// A channel of the photo counts as clipped from this linear value on; only the two largest 8-bit values reach it. In
@@ -111,7 +112,7 @@ impl Moments {
             return None;
         }
         let (variance, covariance) = ((self.xx / self.n - x * x).max(0.0), self.xy / self.n - x * y);
-        let pull = (RIDGE * x).powi(2);
+        let pull = maths::powi(RIDGE * x, 2);
         let slope = ((covariance + pull * y / x) / (variance + pull)).max(0.0);
         Some(Line { start: y - slope * x, slope, ratio: y / x })
     }

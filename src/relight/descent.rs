@@ -2,6 +2,7 @@
 //! Bertsekas 1982 for the projection).
 
 use crate::job::Job;
+use crate::maths;
 
 /// Bounds of the variables.
 pub(super) struct Bounds<const N: usize> {
@@ -88,7 +89,7 @@ pub(super) fn run<const N: usize>(
         // Halve the step until the Armijo condition holds.
         let mut next = None;
         for halving in 0..MAX_HALVINGS {
-            let share = 0.5f64.powi(halving as i32);
+            let share = maths::powi(0.5f64, halving as i32);
             let to = bounds.nearest(std::array::from_fn(|i| x[i] + share * step[i]));
             let step_taken: [f64; N] = std::array::from_fn(|i| to[i] - x[i]);
             let (there, gradient_there) = f(to);

@@ -8,6 +8,7 @@
 
 use super::bounded::dot;
 use super::sided::Constraint;
+use crate::maths;
 
 /// The terms of the goals, one per row of the matrix: see [`super::sided::OneSidedLeastSquares`].
 pub(super) struct Terms<'a> {
@@ -86,7 +87,7 @@ impl Terms<'_> {
     fn sum(&self, state: &DimmingState, j: usize, change: f64) -> f64 {
         let n = state.powers.len();
         let light = |i: usize| state.light[i] + self.matrix[i * n + j] * change;
-        (0..self.right.len()).map(|i| self.constraints[i].miss(light(i) - self.right[i]).powi(2)).sum()
+        (0..self.right.len()).map(|i| maths::powi(self.constraints[i].miss(light(i) - self.right[i]), 2)).sum()
     }
 }
 

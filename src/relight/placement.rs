@@ -21,6 +21,7 @@ use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use crate::maths;
 use crate::rng::Rng;
 use crate::scene::Texture;
 use glam::{DMat2, DMat3, DVec2, DVec3, Vec3};
@@ -54,7 +55,7 @@ impl Pose {
 
     /// Returns the placement as a matrix for [`Importance::respond`].
     pub fn matrix(&self) -> DMat3 {
-        let turned = DMat2::from_angle(self.rotation) * DMat2::from_diagonal(self.scale);
+        let turned = maths::rotation_2d(self.rotation) * DMat2::from_diagonal(self.scale);
         let centre = DVec2::splat(0.5);
         DMat3::from_mat2(turned)
             + DMat3::from_cols(DVec3::ZERO, DVec3::ZERO, (centre + self.offset - turned * centre).extend(0.0))
@@ -228,12 +229,12 @@ impl Search {
     /// of the placement.
     fn light(&self, numbers: [f64; 5]) -> (DVec3, [DVec3; 5]) {
         let pose = Pose::of(numbers);
-        let rotation = DMat2::from_angle(pose.rotation);
+        let rotation = maths::rotation_2d(pose.rotation);
         let Cells { width, height, importance } = &self.cells;
         let cell = DVec2::new(1.0 / *width as f64, 1.0 / *height as f64);
         // Choose the pyramid level at which a cell covers the area of one texel.
         let texels = pose.scale.element_product() * (cell * self.texels).element_product();
-        let level = 0.5 * texels.log2();
+        let level = 0.5 * maths::log2(texels);
         let by_scale = DVec2::splat(0.5 / std::f64::consts::LN_2) / pose.scale;
         let (mut light, mut derivatives) = (DVec3::ZERO, [DVec3::ZERO; 5]);
         for (i, importance) in importance.iter().enumerate().filter(|(_, i)| **i != DVec3::ZERO) {

@@ -6,6 +6,7 @@ use super::solution::{Solution, TargetStatus};
 use super::transport::Pairs;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour;
+use crate::maths;
 use glam::DVec3;
 
 /// Measurements of the batches: the target's mean radiance under the emission, and under all other light.
@@ -148,7 +149,7 @@ impl Channel {
 fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64 {
     let squares = (0..BATCHES).map(|b| {
         let deviation = DVec3::from(std::array::from_fn(|c| answers[c].deviations[b])) / (BATCHES as f64 - 1.0).sqrt();
-        colour::delta_e_from(target, target + deviation * response).powi(2)
+        maths::powi(colour::delta_e_from(target, target + deviation * response), 2)
     });
     STUDENT_T * (squares.sum::<f64>() / BATCHES as f64).sqrt()
 }

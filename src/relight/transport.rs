@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::try_vec;
 use crate::job::Job;
+use crate::maths;
 use crate::render::World;
 use crate::rng::{Rng, hash};
 use glam::DVec3;
@@ -50,8 +51,11 @@ impl Stop {
         if error <= self.target_error && self.target_error > 0.0 || spent >= self.budget || paths >= self.max_paths {
             return None;
         }
-        let forecast =
-            if self.target_error > 0.0 { FORECAST_MARGIN * (error / self.target_error).powi(2) } else { f64::INFINITY };
+        let forecast = if self.target_error > 0.0 {
+            FORECAST_MARGIN * maths::powi(error / self.target_error, 2)
+        } else {
+            f64::INFINITY
+        };
         Some(forecast.min(self.budget / spent))
     }
 }

@@ -6,6 +6,7 @@
 //! sampling of many lights with adaptive tree splitting", section 4). The importance is never 0 if light of the cluster
 //! can reach the receiver.
 
+use crate::maths;
 use glam::Vec3;
 use std::f32::consts::{FRAC_PI_2, PI};
 
@@ -87,7 +88,7 @@ impl Bounds {
             let one_way = whole.two_sided || !part.two_sided;
             // Take axes that agree up to rounding as equal, because acos magnifies rounding errors near 1. Most
             // clusters are flat, with equal axes.
-            let angle = if cosine > 1.0 - 1e-6 { 0.0 } else { cosine.clamp(-1.0, 1.0).acos() };
+            let angle = if cosine > 1.0 - 1e-6 { 0.0 } else { maths::acos(cosine.clamp(-1.0, 1.0)) };
             whole.cone_angle =
                 whole.cone_angle.max(if one_way { angle + part.cone_angle } else { FULL_SPHERE }).min(FULL_SPHERE);
         }
@@ -181,7 +182,7 @@ impl BoundsLanes {
             let flat = b.cone_angle == FRAC_PI_2;
             lanes.box_extent[i] = if flat { half.dot(b.axis.abs()) } else { half.length() };
             lanes.back_sign[i] = if b.two_sided { -1.0 } else { 1.0 };
-            let (sine, cosine) = if flat { (0.0, 1.0) } else { (b.cone_angle - FRAC_PI_2).sin_cos() };
+            let (sine, cosine) = if flat { (0.0, 1.0) } else { maths::sin_cos(b.cone_angle - FRAC_PI_2) };
             lanes.cone_rotation[0][i] = sine;
             lanes.cone_rotation[1][i] = cosine;
             let narrow = b.cone_angle < FRAC_PI_2;

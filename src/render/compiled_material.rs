@@ -1,6 +1,7 @@
 //! Materials prepared for path tracing: parameters that do not vary with a texture are computed once per material.
 
 use super::bsdf::BsdfParams;
+use crate::maths;
 use crate::scene::Material;
 use glam::Vec3;
 
@@ -58,7 +59,7 @@ pub fn bsdf_params(material: &Material, base: Vec3, metallic: f32, roughness: f3
     let base = base.clamp(Vec3::ZERO, Vec3::ONE);
     let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
     let transmission = material.transmission.clamp(0.0, 1.0);
-    let dielectric_f0 = ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
+    let dielectric_f0 = maths::powi((material.ior - 1.0) / (material.ior + 1.0), 2);
     // A dielectric with an index of refraction of 1 has no interface, so it does not reflect at grazing angles either.
     let has_interface = material.ior > 1.0;
     BsdfParams {

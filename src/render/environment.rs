@@ -4,6 +4,7 @@ use super::contribution::mean_channel;
 use super::distribution::Distribution;
 use crate::error::Result;
 use crate::image::Image;
+use crate::maths;
 use crate::scene::Environment;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{PI, TAU};
@@ -47,7 +48,7 @@ impl EnvironmentSampler {
             Self::Constant => {
                 let (cosine, angle) = (1.0 - 2.0 * u as f32, TAU * v);
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-                (Vec3::new(sine * angle.cos(), cosine, sine * angle.sin()), 1.0 / (4.0 * PI))
+                (Vec3::new(sine * maths::cos(angle), cosine, sine * maths::sin(angle)), 1.0 / (4.0 * PI))
             }
             Self::Image { rows, columns } => {
                 let (y, remainder) = rows.sample(u);
@@ -59,7 +60,7 @@ impl EnvironmentSampler {
                 let cosine = (top + (bottom - top) * remainder) as f32;
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
                 let angle = ((x as f64 + across) / width as f64 - 0.5) as f32 * TAU;
-                let direction = Vec3::new(sine * angle.sin(), cosine, -sine * angle.cos());
+                let direction = Vec3::new(sine * maths::sin(angle), cosine, -sine * maths::cos(angle));
                 (direction, self.pixel_pdf(x, y))
             }
         }
@@ -111,11 +112,11 @@ pub fn radiance(environment: &Environment, direction: Vec3) -> Vec3 {
 /// Returns the texture coordinates of a unit direction. The centre of the image is the direction -z, its top +y, and
 /// +x lies a quarter of the width to the right of the centre.
 fn equirectangular(d: Vec3) -> Vec2 {
-    Vec2::new(0.5 + d.x.atan2(-d.z) / TAU, d.y.clamp(-1.0, 1.0).acos() / PI)
+    Vec2::new(0.5 + maths::atan2(d.x, -d.z) / TAU, maths::acos(d.y.clamp(-1.0, 1.0)) / PI)
 }
 
 fn polar_cosines(y: usize, height: usize) -> (f64, f64) {
-    let cosine = |y: usize| (std::f64::consts::PI * y as f64 / height as f64).cos();
+    let cosine = |y: usize| maths::cos(std::f64::consts::PI * y as f64 / height as f64);
     (cosine(y), cosine(y + 1))
 }
 

@@ -1,6 +1,7 @@
 //! Triangles as the path tracer uses them: the data needed to shade a hit, in one cache line. Also chooses the origin
 //! of world coordinates.
 
+use crate::maths;
 use crate::scene::Mesh;
 use crate::scene::origin;
 use glam::{DVec3, Vec2, Vec3};
@@ -139,7 +140,7 @@ pub fn centre(meshes: &[Mesh]) -> DVec3 {
     if !(extent > 0.0 && extent.is_finite()) {
         return if low.is_finite() { low } else { DVec3::ZERO };
     }
-    let grid = 2f64.powi(extent.log2().ceil() as i32);
+    let grid = maths::powi(2f64, maths::log2(extent).ceil() as i32);
     let middle = (low + high) / 2.0;
     let whole = DVec3::select(middle.abs().cmplt(DVec3::splat(grid)), DVec3::ZERO, (middle / grid).round() * grid);
     if whole == DVec3::ZERO { centre_of_detail(meshes).unwrap_or(whole) } else { whole }
@@ -154,7 +155,7 @@ fn centre_of_detail(meshes: &[Mesh]) -> Option<DVec3> {
     let corners: Vec<DVec3> = sampled.flat_map(|(mesh, triangle)| mesh.corners(triangle)).map(Vec3::as_dvec3).collect();
     let (median, half_extent) = origin::detail(&corners)?;
     let is_far = half_extent > 0.0 && median.abs().max_element() > FAR * half_extent;
-    let grid = 2f64.powi((2.0 * half_extent).max(f64::MIN_POSITIVE).log2().ceil() as i32);
+    let grid = maths::powi(2f64, maths::log2((2.0 * half_extent).max(f64::MIN_POSITIVE)).ceil() as i32);
     is_far.then(|| (median / grid).round() * grid)
 }
 

@@ -3,6 +3,7 @@
 //!
 //! Directions are given in a frame whose z axis is the normal; `alpha` is the square of the perceptual roughness.
 
+use crate::maths;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, PI};
 
@@ -167,7 +168,7 @@ fn directional_albedo(cosine: f32, alpha: f32) -> Vec2 {
         let wi = h * (2.0 * wo.dot(h)) - wo;
         if wi.z > 0.0 {
             let weight = lobe.masking / (lobe.masking + lambda(wi, alpha));
-            let grazing = (1.0 - wo.dot(h)).clamp(0.0, 1.0).powi(5);
+            let grazing = maths::powi((1.0 - wo.dot(h)).clamp(0.0, 1.0), 5);
             sum += Vec2::new(1.0 - grazing, grazing) * weight;
         }
     }

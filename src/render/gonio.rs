@@ -25,6 +25,7 @@ use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::{Image, check_memory, colour, try_collect, try_vec};
 use crate::job::Job;
+use crate::maths;
 use crate::photometry::Luminaire;
 use crate::photometry::opening::Opening;
 use crate::rng;
@@ -137,7 +138,7 @@ fn directions(params: &Params) -> Vec<[f64; 2]> {
 
 /// Returns the unit vector of a direction in the coordinates of the luminaire.
 fn local([c, gamma]: [f64; 2]) -> DVec3 {
-    let ((sin_c, cos_c), (sin_gamma, cos_gamma)) = (c.to_radians().sin_cos(), gamma.to_radians().sin_cos());
+    let ((sin_c, cos_c), (sin_gamma, cos_gamma)) = (maths::sin_cos(c.to_radians()), maths::sin_cos(gamma.to_radians()));
     DVec3::new(sin_gamma * cos_c, sin_gamma * sin_c, cos_gamma)
 }
 
@@ -300,7 +301,8 @@ impl<'a> Goniometer<'a> {
                 .iter()
                 .zip(measured)
                 .filter(|(_, found)| found.luminous_area >= MIN_LUMINOUS_SHARE * largest);
-            seen.map(|(angles, found)| (opening.projected_area(local(*angles)) - found.luminous_area).powi(2)).sum()
+            seen.map(|(angles, found)| maths::powi(opening.projected_area(local(*angles)) - found.luminous_area, 2))
+                .sum()
         };
         let best = shapes.iter().min_by(|a, b| misfit(a).total_cmp(&misfit(b)));
         best.copied().unwrap_or([x, y, z])
@@ -311,7 +313,7 @@ impl<'a> Goniometer<'a> {
 fn mean_and_error(estimates: &[f64; BATCHES]) -> (f64, f64) {
     let n = BATCHES as f64;
     let mean = estimates.iter().sum::<f64>() / n;
-    let variance = estimates.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / (n * (n - 1.0));
+    let variance = estimates.iter().map(|e| maths::powi(e - mean, 2)).sum::<f64>() / (n * (n - 1.0));
     (mean, variance.sqrt())
 }
 

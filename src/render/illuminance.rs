@@ -15,6 +15,7 @@ use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::{Image, MAX_SIDE, colour, try_vec};
 use crate::job::Job;
+use crate::maths;
 use crate::rng;
 use glam::{DVec3, Vec2, Vec3};
 
@@ -110,7 +111,7 @@ pub fn run(world: &World, place: &CalculationPoints, params: &Params, job: Job) 
         }
         let n = f64::from(BATCHES);
         let mean = luxes.iter().sum::<f64>() / n;
-        let variance = luxes.iter().map(|l| (l - mean).powi(2)).sum::<f64>() / (n * (n - 1.0));
+        let variance = luxes.iter().map(|l| maths::powi(l - mean, 2)).sum::<f64>() / (n * (n - 1.0));
         Some((mean, variance))
     })?;
     job.check()?;

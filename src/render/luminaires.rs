@@ -10,6 +10,7 @@ use super::facet;
 use super::measured::Measured;
 use crate::error::Result;
 use crate::image::{try_collect, try_with_capacity};
+use crate::maths;
 use crate::photometry::faces::{Emits, FacePatch, Faces};
 use crate::photometry::opening::Opening;
 use crate::scene::{MAX_LIGHT, Mesh, PunctualLight, Scene, c90};
@@ -226,7 +227,8 @@ impl LuminaireShape {
         let samples: Vec<(DVec3, f64)> = directions
             .map(|angles| {
                 let [c, gamma] = angles.map(|degrees| f64::from(degrees as u32).to_radians());
-                let local = DVec3::new(gamma.sin() * c.cos(), gamma.sin() * c.sin(), gamma.cos());
+                let local =
+                    DVec3::new(maths::sin(gamma) * maths::cos(c), maths::sin(gamma) * maths::sin(c), maths::cos(gamma));
                 (local, measured.candela(local) / opening.projected_area(local).max(min_area))
             })
             .collect();

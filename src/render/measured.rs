@@ -1,5 +1,6 @@
 //! The luminous intensity of a measured luminaire by directions of the scene.
 
+use crate::maths;
 use crate::photometry::Luminaire;
 use crate::scene::c90;
 use glam::{DVec3, Vec3};
@@ -24,7 +25,7 @@ impl Measured {
 
     /// Returns the intensity in candela in a direction of any length, in the coordinates of the luminaire.
     pub fn candela(&self, local: DVec3) -> f64 {
-        let gamma = local.x.hypot(local.y).atan2(local.z);
-        self.luminaire.intensity(local.y.atan2(local.x).to_degrees(), gamma.to_degrees())
+        let gamma = maths::atan2(maths::hypot(local.x, local.y), local.z);
+        self.luminaire.intensity(maths::atan2(local.y, local.x).to_degrees(), gamma.to_degrees())
     }
 }

@@ -9,6 +9,7 @@
 use super::bsdf::{BsdfParams, MIRROR_ROUGHNESS};
 use super::compiled_material::{self, CompiledMaterial};
 use super::ggx::{self, AlbedoTable};
+use crate::maths;
 use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, TextureRef};
 use glam::{Vec3, Vec4};
 
@@ -69,7 +70,7 @@ impl Requirements {
         if a == 0.0 || error >= 1.0 {
             return Some(1);
         }
-        Some((f64::from(error).ln() / a.ln()).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
+        Some((maths::ln(f64::from(error)) / maths::ln(a)).ceil().clamp(1.0, f64::from(u32::MAX)) as u32)
     }
 
     /// Returns one sentence for each shading feature that the scene does not need and tracing therefore omits, and one

@@ -1,5 +1,6 @@
 //! The pinhole camera from which a scene is rendered.
 
+use crate::maths;
 use glam::Vec3;
 
 /// A pinhole camera.
@@ -27,7 +28,7 @@ impl Camera {
     /// Returns the unnormalised ray direction through a point of the image. `x` and `y` lie in `[0, 1]` from the
     /// top-left corner; `aspect` is width over height.
     pub fn direction(&self, x: f32, y: f32, aspect: f32) -> Vec3 {
-        let half = (self.fov_y / 2.0).tan();
+        let half = maths::tan(self.fov_y / 2.0);
         let right = self.forward.cross(self.up);
         self.forward + right * ((2.0 * x - 1.0) * half * aspect) + self.up * ((1.0 - 2.0 * y) * half)
     }
@@ -35,7 +36,7 @@ impl Camera {
     /// The inverse of [`Camera::direction`]: returns the image position (x, y) to which a direction projects, and the
     /// component of the direction along `forward`. Returns `None` unless this component is positive.
     pub fn project(&self, direction: Vec3, aspect: f32) -> Option<([f32; 2], f32)> {
-        let half = (self.fov_y / 2.0).tan();
+        let half = maths::tan(self.fov_y / 2.0);
         let depth = direction.dot(self.forward);
         let x = direction.dot(self.forward.cross(self.up)) / (depth * half * aspect);
         let y = direction.dot(self.up) / (depth * half);

@@ -1,6 +1,7 @@
 //! Warnings about signs that a scene will not be rendered as its author intended.
 
 use super::{PunctualLight, Scene};
+use crate::maths;
 use crate::warning::{Code, Warning};
 use glam::{DVec3, Vec3};
 
@@ -127,7 +128,7 @@ impl Scene {
         let extent = (high - low).as_dvec3();
         let (height, width) = (extent.y, extent.x.max(extent.z));
         let warn = |word: &str, size: f64, limit: f64, usual: f64, units: &[(&str, f64)]| {
-            let distance = |unit: f64| (size * unit / usual).ln().abs();
+            let distance = |unit: f64| maths::ln(size * unit / usual).abs();
             let (name, unit) = units.iter().min_by(|a, b| distance(a.1).total_cmp(&distance(b.1)))?;
             let (size_text, likely) = (significant(size), significant(size * unit));
             let message =
@@ -166,7 +167,7 @@ impl Scene {
 /// Formats a length without an exponent, with three significant digits but with all digits before the decimal point:
 /// 2712, 4.56, 0.0123. Zeros at the end of a fraction are omitted: 4.5.
 fn significant(length: f64) -> String {
-    let digits = 2.0 - length.log10().floor();
+    let digits = 2.0 - maths::log10(length).floor();
     let text = format!("{length:.*}", digits.clamp(0.0, 12.0) as usize);
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }

@@ -6,6 +6,7 @@ pub use file::{to_csv, to_json};
 
 use crate::emission::{Emission, Luminaire};
 use crate::image::colour::luminance;
+use crate::maths;
 use crate::photometry::temperature;
 use crate::scene::surface::Surface;
 use glam::{DVec2, Vec3};
@@ -51,7 +52,7 @@ fn fixture(emission: &Emission, surface: &Surface, strength: Vec3, lamp: &Lumina
         let p = (texels * texel).as_vec2();
         surface.origin + surface.u_axis * p.x + surface.v_axis * p.y
     };
-    let axis = DVec2::from_angle(lamp.orientation);
+    let axis = maths::direction_at(lamp.orientation);
     let area = lamp.area * texel.x * texel.y;
     let radiance = lamp.colour * strength;
     let temperature = temperature::of_rgb(radiance.as_dvec3());

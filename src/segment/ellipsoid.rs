@@ -3,6 +3,7 @@
 use super::input::MAX_CHANNELS;
 use super::logistic::cholesky_solve;
 use super::table::{BLOCK, Lanes, Table, combine, dot_lanes};
+use crate::maths;
 use crate::simd::widest;
 
 /// Variance that is added to each feature of a class, in standardised units. It gives a class a standard deviation of
@@ -94,7 +95,7 @@ pub fn mean_unseen(pixels: &Table, columns: &[usize], ellipsoids: &[Ellipsoid]) 
             let distances = ellipsoid.squared_distances(block, columns);
             nearest.iter_mut().zip(distances).for_each(|(n, d)| *n = n.min(d));
         }
-        sum += nearest[..rows.len()].iter().map(|n| 1.0 - (1.0 - n.max(1.0).sqrt()).exp()).sum::<f64>();
+        sum += nearest[..rows.len()].iter().map(|n| 1.0 - maths::exp(1.0 - n.max(1.0).sqrt())).sum::<f64>();
     }
     sum / pixels.rows.max(1) as f64
 }

@@ -5,6 +5,7 @@ use super::samples::Samples;
 use super::segmentation::Model;
 use super::table::Table;
 use crate::error::Result;
+use crate::maths;
 
 /// Channels that form a vector: CIELAB colour, position and normal. The components of a vector have one unit, so they
 /// share one scale: the scale of the component that varies most. With a scale per channel, a channel that hardly varies
@@ -28,7 +29,7 @@ impl Standard {
             x.iter().zip(&mut mean).for_each(|(x, m)| *m += x / n);
         }
         for x in samples.values.chunks_exact(d) {
-            (0..d).for_each(|i| square[i] += (x[i] - mean[i]).powi(2) / n);
+            (0..d).for_each(|i| square[i] += maths::powi(x[i] - mean[i], 2) / n);
         }
         let spread: Vec<f64> = square.iter().map(|v| v.sqrt()).collect();
         let vector_of = |i: usize| VECTORS.iter().position(|v| v.contains(&samples.channels[i]));

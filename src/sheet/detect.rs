@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, pyramid};
 use crate::job::Job;
+use crate::maths;
 use glam::{DMat2, DVec2};
 
 /// Maximum length, in pixels, of the longer side of the image in which marks are searched for. A larger photo is
@@ -88,7 +89,7 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
             let xx = v(0, 1) + v(2, 1) - 2.0 * v(1, 1);
             let yy = v(1, 0) + v(1, 2) - 2.0 * v(1, 1);
             let xy = (v(0, 0) + v(2, 2) - v(2, 0) - v(0, 2)) / 4.0;
-            row[x] = (xy * xy - xx * yy) * sigma.powi(4);
+            row[x] = (xy * xy - xx * yy) * maths::powi(sigma, 4);
         }
     })?;
     let radius_in_pixels = (NEIGHBOURHOOD * sigma).ceil() as usize;
@@ -122,15 +123,15 @@ const MIN_RESPONSE: f32 = 2e-4;
 fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     const STEPS: usize = 32;
     let value = |i: usize| {
-        let p = at + radius * DVec2::from_angle(std::f64::consts::TAU * i as f64 / STEPS as f64);
+        let p = at + radius * maths::direction_at(std::f64::consts::TAU * i as f64 / STEPS as f64);
         f64::from(image.sample(p.x, p.y, 0))
     };
     let values: [f64; STEPS] = std::array::from_fn(value);
     let mean = values.iter().sum::<f64>() / STEPS as f64;
-    let power: f64 = values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / STEPS as f64;
+    let power: f64 = values.iter().map(|v| maths::powi(v - mean, 2)).sum::<f64>() / STEPS as f64;
     let mut second = DVec2::ZERO;
     for (i, v) in values.iter().enumerate() {
-        second += (v - mean) * DVec2::from_angle(2.0 * std::f64::consts::TAU * i as f64 / STEPS as f64);
+        second += (v - mean) * maths::direction_at(2.0 * std::f64::consts::TAU * i as f64 / STEPS as f64);
     }
     let amplitude = 2.0 * second.length() / STEPS as f64;
     let share = amplitude * amplitude / 2.0 / power.max(1e-12);
@@ -149,7 +150,7 @@ pub fn refine(grey: &Image, start: DVec2, radius: f64) -> Option<DVec2> {
         for j in -radius_in_pixels..=radius_in_pixels {
             for i in -radius_in_pixels..=radius_in_pixels {
                 let offset = DVec2::new(i as f64, j as f64);
-                let weight = (-2.0 * offset.length_squared() / (radius * radius)).exp();
+                let weight = maths::exp(-2.0 * offset.length_squared() / (radius * radius));
                 let p = at + offset;
                 let v = |dx: f64, dy: f64| f64::from(grey.sample(p.x + dx, p.y + dy, 0));
                 let gradient = DVec2::new(v(1.0, 0.0) - v(-1.0, 0.0), v(0.0, 1.0) - v(0.0, -1.0));

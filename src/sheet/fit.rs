@@ -7,6 +7,7 @@ use crate::geometry::Homography;
 use crate::geometry::linear::solve;
 use crate::image::Image;
 use crate::job::Job;
+use crate::maths;
 use glam::DVec2;
 
 /// Minimum number of marks: fewer marks could agree by coincidence.
@@ -116,7 +117,7 @@ fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess
 fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
     let centre = points.iter().sum::<DVec2>() / 4.0;
     let mut ordered = points;
-    ordered.sort_by(|p, q| (*p - centre).to_angle().total_cmp(&(*q - centre).to_angle()));
+    ordered.sort_by(|p, q| maths::angle_of(*p - centre).total_cmp(&maths::angle_of(*q - centre)));
     let turns = |i: usize| {
         let [p, q, r] = [0, 1, 2].map(|k| ordered[(i + k) % 4]);
         (q - p).perp_dot(r - q)

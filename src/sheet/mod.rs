@@ -27,6 +27,7 @@ use crate::geometry::linear::solve;
 use crate::image::colour::{linear_to_srgb, luminance, srgb_to_linear};
 use crate::image::{Image, pyramid};
 use crate::job::Job;
+use crate::maths;
 use crate::{exec, rectify};
 use glam::{DVec2, Vec3};
 use page::Page;
@@ -132,7 +133,7 @@ fn even_light(
                 let at = found.to_photo.apply(p);
                 f64::from(photo.sample(at.x, at.y, channel.min(photo.channels - 1)))
             });
-            let brightness = ((value[0] + value[1]) / 2.0).max(1e-4).ln();
+            let brightness = maths::ln(((value[0] + value[1]) / 2.0).max(1e-4));
             let row = terms(centre);
             for i in 0..4 {
                 right[i] += row[i] * brightness;
@@ -146,7 +147,7 @@ fn even_light(
     exec::for_rows(&mut image.data, 3 * width, job, |y, row| {
         for (x, pixel) in row.chunks_exact_mut(3).enumerate() {
             let at = terms(from_picture.apply(DVec2::new(x as f64 + 0.5, y as f64 + 0.5)));
-            let white = white.map(|c| c.iter().zip(at).map(|(c, t)| c * t).sum::<f64>().exp() as f32);
+            let white = white.map(|c| maths::exp(c.iter().zip(at).map(|(c, t)| c * t).sum::<f64>()) as f32);
             let even = Vec3::from_slice(pixel) / Vec3::from_array(white);
             pixel.copy_from_slice(&even.to_array());
         }

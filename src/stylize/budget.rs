@@ -10,6 +10,8 @@
 //! arises if most exemplar patches have no suitable place (Fig. 7). A curve that never runs below the diagonal has no
 //! knee: all of its errors are feasible.
 
+use crate::maths;
+
 /// Minimum number of errors to which a curve is fitted.
 const MIN_ERRORS: usize = 8;
 /// Maximum number of points of the sorted curve to which a hyperbola is fitted.
@@ -38,8 +40,8 @@ impl Hyperbola {
     /// Returns the share of the variance of `points` that the hyperbola explains.
     fn explained(self, points: &[(f64, f64)]) -> f64 {
         let mean = points.iter().map(|p| p.1).sum::<f64>() / points.len() as f64;
-        let variance: f64 = points.iter().map(|p| (p.1 - mean).powi(2)).sum();
-        let rest: f64 = points.iter().map(|p| (p.1 - 1.0 / (self.a - self.b * p.0)).powi(2)).sum();
+        let variance: f64 = points.iter().map(|p| maths::powi(p.1 - mean, 2)).sum();
+        let rest: f64 = points.iter().map(|p| maths::powi(p.1 - 1.0 / (self.a - self.b * p.0), 2)).sum();
         1.0 - rest / variance
     }
 

@@ -22,6 +22,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::image::colour::{linear_to_srgb, luminance};
 use crate::job::Job;
+use crate::maths;
 use glam::Vec3;
 use std::f32::consts::PI;
 
@@ -250,9 +251,9 @@ fn angle(cells: &Image, first: [usize; 2], side: usize) -> Option<f32> {
     }
     let n = (side * side) as f32;
     let (xx, xy, yy) = (xx / n - x * x / (n * n), xy / n - x * y / (n * n), yy / n - y * y / (n * n));
-    let coherence = (xx - yy).hypot(2.0 * xy) / (xx + yy);
+    let coherence = maths::hypot(xx - yy, 2.0 * xy) / (xx + yy);
     let is_clear = coherence >= MIN_COHERENCE && xx + yy >= MIN_GRADIENT * MIN_GRADIENT;
-    is_clear.then(|| 0.5 * (2.0 * xy).atan2(xx - yy))
+    is_clear.then(|| 0.5 * maths::atan2(2.0 * xy, xx - yy))
 }
 
 fn grey(pixel: &[f32]) -> f32 {

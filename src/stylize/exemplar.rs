@@ -17,6 +17,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::try_with_capacity;
 use crate::job::Job;
+use crate::maths;
 
 /// Number of blocks along the longer side of the exemplar, and the minimum side of a block in pixels.
 const BLOCKS: usize = 48;
@@ -167,7 +168,7 @@ fn block(at: [usize; 2], side: usize, problem: &Problem, roots: &[f32]) -> Optio
     for (x, y) in pixels() {
         for ((mean, v), root) in guides.iter_mut().zip(source.pixel(x, y)).zip(roots) {
             *mean += share * v * root;
-            square += share * (v * root).powi(2);
+            square += share * maths::powi(v * root, 2);
         }
         paint.iter_mut().zip(style.pixel(x, y)).for_each(|(mean, v)| *mean += share * v);
     }

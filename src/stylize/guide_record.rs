@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{Comparison, Image, neighbourhood, try_collect, try_vec};
 use crate::job::Job;
+use crate::maths;
 
 /// Number of steps into which the range `[0, 1]` of a guide is divided: values are stored in 8 bits. [rounding]
 const STEPS: f32 = 255.0;
@@ -69,7 +70,8 @@ impl GuideRecord {
         let n = self.weights.len();
         let light = self.light[patch * n..(patch + 1) * n].iter();
         let pairs = light.zip(&other.light[other_patch * n..(other_patch + 1) * n]);
-        let terms = pairs.zip(&self.weights).map(|((a, b), w)| w * ((f32::from(*a) - f32::from(*b)) / STEPS).powi(2));
+        let terms =
+            pairs.zip(&self.weights).map(|((a, b), w)| w * maths::powi((f32::from(*a) - f32::from(*b)) / STEPS, 2));
         terms.sum::<f32>().sqrt()
     }
 

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_with_capacity};
 use crate::job::Job;
+use crate::maths;
 use std::collections::BTreeSet;
 
 /// Maximum number of samples along the longer side of an image; only these pixels are compared.
@@ -135,9 +136,9 @@ fn codes(guides: &Channels, source_mask: Option<&[bool]>) -> Result<Option<Codes
 impl Codes {
     fn has_similar(&self, guides: &[f32]) -> bool {
         let difference = |code: &[f32]| -> f64 {
-            code.iter().zip(guides).zip(&self.weights).map(|((a, b), w)| w * f64::from(a - b).powi(2)).sum()
+            code.iter().zip(guides).zip(&self.weights).map(|((a, b), w)| w * maths::powi(f64::from(a - b), 2)).sum()
         };
-        let limit = f64::from(SIMILAR).powi(2);
+        let limit = maths::powi(f64::from(SIMILAR), 2);
         self.values.chunks_exact(guides.len()).any(|code| difference(code) <= limit)
     }
 }

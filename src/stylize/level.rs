@@ -12,6 +12,7 @@ use crate::exec;
 use crate::image::colour::linear_to_srgb;
 use crate::image::{Image, try_collect, try_vec};
 use crate::job::Job;
+use crate::maths;
 use crate::patch::{Domain, Kernel, QuantisedImage, Quantiser, Search, halve, halve_mask};
 
 /// The problem at one pyramid level, in floating-point numbers. The next coarser problem is derived from it.
@@ -233,7 +234,7 @@ impl<'a> Level<'a> {
         if weights.iter().all(|&w| w == 0.0) {
             weights[channels] = f64::MIN_POSITIVE;
         }
-        let unit = Quantiser::unit(&weights, problem.patch).powi(2);
+        let unit = maths::powi(Quantiser::unit(&weights, problem.patch), 2);
         let mut quantisers = Quantiser::for_weights(&weights, problem.patch);
         let guide_quantisers = quantisers.split_off(channels);
 

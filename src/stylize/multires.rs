@@ -16,6 +16,7 @@ use super::retrieve::{PassReport, retrieve};
 use crate::error::{Error, Result};
 use crate::image::{Comparison, Image, try_collect};
 use crate::job::Job;
+use crate::maths;
 use crate::patch::{Field, NONE, SearchIteration, level_count, unpack};
 use crate::rng::hash;
 
@@ -73,7 +74,7 @@ pub(super) fn run(
     }
 
     // A level costs four times as much as the next coarser level.
-    let cost = |l: usize| 0.25f64.powi(l as i32);
+    let cost = |l: usize| maths::powi(0.25f64, l as i32);
     let total: f64 = (0..levels).map(cost).sum();
     let mut done = 0.0;
     let mut reports = Vec::new();

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use crate::maths;
 
 /// Share of the variance to keep. [bench constants:paint]
 const KEPT_VARIANCE: f64 = 0.995;
@@ -96,7 +97,7 @@ fn stretch(source: &mut Image, target: &mut Image) -> Vec<f64> {
         let all = source.data.iter().skip(k).step_by(count).chain(target.data.iter().skip(k).step_by(count));
         let (low, high) = all.fold((f32::MAX, f32::MIN), |(l, h), &v| (l.min(v), h.max(v)));
         let range = high - low;
-        weights.push(f64::from(range).powi(2));
+        weights.push(maths::powi(f64::from(range), 2));
         let scale = if range > 0.0 { 1.0 / range } else { 0.0 };
         for image in [&mut *source, &mut *target] {
             image.data.iter_mut().skip(k).step_by(count).for_each(|v| *v = (*v - low) * scale);
@@ -110,8 +111,9 @@ fn stretch(source: &mut Image, target: &mut Image) -> Vec<f64> {
 fn symmetric_eigen(mut m: Vec<f64>, n: usize) -> (Vec<f64>, Vec<f64>) {
     let mut v: Vec<f64> = (0..n * n).map(|i| if i % (n + 1) == 0 { 1.0 } else { 0.0 }).collect();
     for _ in 0..30 {
-        let off: f64 = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| m[i * n + j].powi(2)).sum();
-        let diagonal: f64 = (0..n).map(|i| m[i * n + i].powi(2)).sum();
+        let off: f64 =
+            (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| maths::powi(m[i * n + j], 2)).sum();
+        let diagonal: f64 = (0..n).map(|i| maths::powi(m[i * n + i], 2)).sum();
         if off <= 1e-24 * diagonal {
             break;
         }

@@ -7,6 +7,7 @@ use super::params::{Input, Params};
 use crate::error::Result;
 use crate::image::Image;
 use crate::job::Job;
+use crate::maths;
 use std::time::Duration;
 
 /// Maximum number of pixels in a pilot run, counted in the smaller of exemplar and target. If the larger of the two
@@ -145,9 +146,9 @@ impl<'a> PilotRuns<'a> {
             seconds: usual.seconds * ratio(here.seconds, its_usual.seconds),
             energy: usual.energy * ratio(here.energy, its_usual.energy),
         });
-        let more = ratio(tried, middle).ln();
-        let growth = if more > 0.0 { ratio(near.seconds, here.seconds).ln() / more - 1.0 } else { 0.0 };
-        let seconds = near.seconds * ratio(all, tried).powf(1.0 + growth.clamp(0.0, MAX_GROWTH));
+        let more = maths::ln(ratio(tried, middle));
+        let growth = if more > 0.0 { maths::ln(ratio(near.seconds, here.seconds)) / more - 1.0 } else { 0.0 };
+        let seconds = near.seconds * maths::powf(ratio(all, tried), 1.0 + growth.clamp(0.0, MAX_GROWTH));
         Prediction { seconds: self.preparing + seconds, energy: self.energy * ratio(near.energy, usual.energy) }
     }
 }
@@ -164,7 +165,7 @@ fn is_near(problem: &Problem) -> bool {
 /// from one resolution to the next is a constant fraction of the previous change (Aitken 1926). The fraction is the
 /// ratio of the two measured changes, limited to `[0.5, 1]`.
 fn extrapolate([far, middle, near]: [f64; 3], steps: usize) -> f64 {
-    let step = |from: f64, to: f64| if from > 0.0 && to > 0.0 { (to / from).ln() } else { 0.0 };
+    let step = |from: f64, to: f64| if from > 0.0 && to > 0.0 { maths::ln(to / from) } else { 0.0 };
     let [before, mut last] = [step(far, middle), step(middle, near)];
     let falls = if before == 0.0 { 1.0 } else { (last / before).clamp(0.5, 1.0) };
     let mut sum = 0.0;
@@ -172,7 +173,7 @@ fn extrapolate([far, middle, near]: [f64; 3], steps: usize) -> f64 {
         last *= falls;
         sum += last;
     }
-    near * sum.exp()
+    near * maths::exp(sum)
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{Comparison, Image, try_vec};
 use crate::job::Job;
+use crate::maths;
 use crate::patch::{Field, NONE, unpack};
 
 /// The report of one resolution level.
@@ -84,7 +85,7 @@ impl Usage {
         let used = counts.iter().filter(|&&c| c > 0);
         let entropy = |c: u32| {
             let p = f64::from(c) / f64::from(total);
-            -p * p.log2()
+            -p * maths::log2(p)
         };
         Ok(Self {
             used: used.clone().count() as f64 / level.allowed.len().max(1) as f64,
@@ -117,7 +118,7 @@ pub(super) fn guide_error(field: &Field, problem: &Problem, job: Job) -> Result<
         for (x, error) in row.iter_mut().enumerate() {
             if let Some((px, py)) = source_of(field, problem.patch, x, y) {
                 let terms = source.pixel(px, py).iter().zip(target.pixel(x, y)).zip(&problem.guides.weights);
-                let sum: f64 = terms.map(|((a, b), w)| w * f64::from(a - b).powi(2)).sum();
+                let sum: f64 = terms.map(|((a, b), w)| w * maths::powi(f64::from(a - b), 2)).sum();
                 *error = sum.sqrt() as f32;
             }
         }

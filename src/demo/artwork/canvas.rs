@@ -4,6 +4,7 @@ use crate::demo::pattern::noise;
 use crate::error::Result;
 use crate::image::colour::srgb_to_linear;
 use crate::image::{Image, try_vec};
+use crate::maths;
 use crate::rng::Rng;
 use glam::{Vec2, Vec3};
 
@@ -45,7 +46,7 @@ impl Canvas {
         let mut canvas = Self::paper(width, height, colour, seed)?;
         for i in 0..width * height {
             let (x, y) = ((i % width) as f32, (i / width) as f32);
-            let thread = (x * 2.1).sin() * (y * 2.1).cos();
+            let thread = maths::sin(x * 2.1) * maths::cos(y * 2.1);
             canvas.tooth[i] = 0.5 + 0.3 * thread + 0.4 * (canvas.tooth[i] - 0.5);
             canvas.relief[i] = 0.25 * thread;
         }

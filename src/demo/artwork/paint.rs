@@ -4,6 +4,7 @@
 use super::canvas::{Canvas, tremor};
 use super::subject::{Appearance, Subject};
 use crate::error::Result;
+use crate::maths;
 use crate::rng::Rng;
 use glam::{Vec2, Vec3};
 
@@ -105,7 +106,7 @@ fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mu
     for (way, path) in [1.0, -1.0].into_iter().zip(&mut ends) {
         let (mut at, mut gone) = (start, 0.0);
         while gone < length / 2.0 {
-            let direction = Vec2::from_angle(lean + bend * gone * way).rotate(subject.at(at).along) * way;
+            let direction = maths::direction_at(lean + bend * gone * way).rotate(subject.at(at).along) * way;
             at += direction * 0.8;
             gone += 0.8;
             let appearance = subject.at(at);
@@ -118,7 +119,7 @@ fn stroke(canvas: &mut Canvas, subject: &Subject, brush: &Brush, start: Vec2, mu
             path.push((at, direction * way));
         }
     }
-    let along = Vec2::from_angle(lean).rotate(here.along);
+    let along = maths::direction_at(lean).rotate(here.along);
     let path: Vec<(Vec2, Vec2)> = ends[1].iter().rev().chain([&(start, along)]).chain(&ends[0]).copied().collect();
 
     // Draw the bristles, each with a limited load of paint.

@@ -5,6 +5,7 @@ use super::canvas::{Canvas, tremor};
 use super::subject::{Appearance, Subject};
 use crate::error::Result;
 use crate::image::try_vec;
+use crate::maths;
 use crate::rng::Rng;
 use glam::{Vec2, Vec3};
 
@@ -146,7 +147,7 @@ fn hatch(canvas: &mut Canvas, subject: &Subject, set: &Set, seed: u64) -> Result
             let inside = subject.at(start).is_object;
             while gone < half_length {
                 let appearance = subject.at(at);
-                let along = Vec2::from_angle(lean + 0.06 * tremor(gone / (14.0 * unit), seed + 7 * line as u64))
+                let along = maths::direction_at(lean + 0.06 * tremor(gone / (14.0 * unit), seed + 7 * line as u64))
                     .rotate(appearance.along);
                 at += along * way * 0.6;
                 gone += 0.6;

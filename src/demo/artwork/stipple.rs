@@ -5,6 +5,7 @@ use super::canvas::Canvas;
 use super::subject::{Appearance, Subject};
 use crate::error::Result;
 use crate::image::try_vec;
+use crate::maths;
 use crate::rng::Rng;
 use glam::{Vec2, Vec3};
 
@@ -83,7 +84,7 @@ fn dots(canvas: &mut Canvas, subject: &Subject, ink: &Ink, seed: u64) -> Result<
         taken[y * columns + x] = at;
         // Draw two touches of the nib side by side, so that no dot is a perfect disk.
         let size = radius * (0.72 + 0.4 * rng.next_f32() + 0.15 * darkness);
-        let aside = Vec2::from_angle(rng.next_f32() * std::f32::consts::TAU) * 0.45 * size;
+        let aside = maths::direction_at(rng.next_f32() * std::f32::consts::TAU) * 0.45 * size;
         canvas.spot(at, size * 0.85, ink.colour, 0.95);
         canvas.spot(at + aside, size * 0.7, ink.colour, 0.9);
     }

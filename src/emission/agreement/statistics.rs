@@ -11,6 +11,7 @@
 
 use crate::emission::exemplar::components::Components;
 use crate::image::colour::luminance;
+use crate::maths;
 use glam::{DMat2, DVec2, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -141,7 +142,7 @@ pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
     let inverse = DMat2::from_cols(a, b).inverse();
     let cells: Vec<DVec2> = points.iter().map(|&p| inverse * p).collect();
     let angle =
-        |f: &dyn Fn(&DVec2) -> f64| cells.iter().map(|c| DVec2::from_angle(TAU * f(c))).sum::<DVec2>().to_angle() / TAU;
+        |f: &dyn Fn(&DVec2) -> f64| maths::angle_of(cells.iter().map(|c| maths::direction_at(TAU * f(c))).sum()) / TAU;
     let origin = DVec2::new(angle(&|c| c.x), angle(&|c| c.y));
     let off = |c: &DVec2| {
         let d = *c - origin;
@@ -154,7 +155,7 @@ pub fn phase(points: &[DVec2], [a, b]: [DVec2; 2]) -> f64 {
 /// (see the beginning of this file).
 fn weight(at: f64, side: usize, period: Option<f64>) -> f64 {
     let side = side as f64;
-    let Some(period) = period else { return (PI * at / side).sin().powi(2) };
+    let Some(period) = period else { return maths::powi(maths::sin(PI * at / side), 2) };
     // All positions have equal weights if the axis is no longer than one period, or a whole number of periods long.
     let spare = if period < side { side % period } else { 0.0 };
     if spare > 0.0 { (at.min(side - at) / spare).min(1.0) } else { 1.0 }

@@ -20,6 +20,7 @@ use crate::error::Result;
 use crate::geometry::polygon;
 use crate::image::colour::luminance;
 use crate::job::Job;
+use crate::maths;
 use glam::{DVec2, Vec2Swizzles};
 
 /// A lamp is listed if at least this area of it, in texels, lies within the texture. [rounding]
@@ -151,7 +152,7 @@ fn within(lamp: &Luminaire, size: DVec2) -> Luminaire {
     if share <= 0.0 {
         return Luminaire { area: 0.0, outline: Vec::new(), kind: 0, ..*lamp };
     }
-    let axis = DVec2::from_angle(lamp.orientation);
+    let axis = maths::direction_at(lamp.orientation);
     let extent = |axis: DVec2| polygon::extent(&outline, axis);
     // If the remaining part is longer across the lamp's axis than along it, exchange the axes.
     let (size, quarter) = (DVec2::new(extent(axis), extent(axis.perp())), std::f64::consts::FRAC_PI_2);

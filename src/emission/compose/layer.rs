@@ -25,6 +25,7 @@ use crate::error::{Error, Result};
 use crate::geometry::robust::weighted_median;
 use crate::image::Image;
 use crate::job::Job;
+use crate::maths;
 use glam::{DVec2, Vec3};
 
 /// A piece of light is a crumb if its area is below this share of the smallest lamp's area. Crumbs are broken off
@@ -203,7 +204,7 @@ impl Layer {
     /// if no lamps are copied as a whole.
     pub fn crumb(&self) -> f64 {
         let smallest = self.exemplar.pieces().map(|(_, l)| l.area as f64).fold(f64::INFINITY, f64::min);
-        if self.instances.is_empty() { 0.0 } else { MAX_CRUMB * smallest / self.scale.powi(2) }
+        if self.instances.is_empty() { 0.0 } else { MAX_CRUMB * smallest / maths::powi(self.scale, 2) }
     }
 }
 

@@ -17,6 +17,7 @@ use crate::error::Result;
 use crate::geometry::polygon;
 use crate::image::try_vec;
 use crate::job::Job;
+use crate::maths;
 use glam::{DVec2, DVec3, Vec3};
 
 /// `BAND`: number of rows of texels in a band. `MARGIN_ROWS`: number of further rows that are rendered above and below
@@ -225,7 +226,7 @@ impl Light {
         let up = self.spans.iter().rev().flat_map(|s| [corner(s.right, s.row + s.rows), corner(s.right, s.row)]);
         let ring: Vec<DVec2> = down.chain(up).collect();
         let extent = |axis: DVec2| polygon::extent(&ring, axis);
-        let axis = DVec2::from_angle(orientation);
+        let axis = maths::direction_at(orientation);
         let size = DVec2::new(extent(axis), extent(axis.perp()));
         Luminaire {
             centre: self.origin + mean,

@@ -1,6 +1,7 @@
 //! Foreshortening: the number of photo pixels that show each part of the unwarped image.
 
 use crate::geometry::{Homography, PhotoMap};
+use crate::maths;
 use glam::{DMat2, DVec2};
 
 /// First-order approximation of the map from the unwarped image into the photo, near a point.
@@ -59,7 +60,7 @@ impl MagnificationLimit {
         let denominator = |i: usize| denominator(&homography, pixel_centre(i, width));
         let values = || (0..shown.len()).filter(|&i| shown[i]).map(denominator);
         let (low, high) = values().fold((f64::INFINITY, 0.0f64), |(low, high), d| (low.min(d), high.max(d)));
-        let max_denominator = low * max_magnification.powf(2.0 / 3.0);
+        let max_denominator = low * maths::powf(max_magnification, 2.0 / 3.0);
         (max_denominator < high).then_some(Self { homography, max_denominator })
     }
 

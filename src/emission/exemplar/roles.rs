@@ -1,6 +1,7 @@
 //! Classifies the components by role: whole lamp, part of a lamp, or a light that runs through the exemplar.
 
 use super::components::{Component, Components};
+use crate::maths;
 use std::ops::RangeInclusive;
 
 /// A light cut by the border resembles a whole lamp if its sides are at most this many times the whole lamp's sides.
@@ -50,7 +51,7 @@ pub fn classify(components: &Components, shown: &[bool], width: usize, height: u
     let contacts = contacts(components, shown, width, height);
     let is_whole = |(c, &n): (&Component, &usize)| {
         let [across, down] = c.size().map(|s| s as f64);
-        n as f64 <= MAX_WHOLE_CONTACT * c.area as f64 / across.hypot(down)
+        n as f64 <= MAX_WHOLE_CONTACT * c.area as f64 / maths::hypot(across, down)
     };
     let whole: Vec<bool> = components.list.iter().zip(&contacts).map(is_whole).collect();
     let sizes: Vec<[usize; 2]> =

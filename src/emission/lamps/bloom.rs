@@ -1,6 +1,7 @@
 //! Bloom: the light that a lens spreads around a lamp. It lengthens every side of a lamp by about the same number of
 //! photo pixels.
 
+use crate::maths;
 use glam::{DMat2, DVec2};
 
 /// `SIDE_NOISE`: standard deviation of the error of a measured side. `BLOOM`: standard deviation of the prior of the
@@ -58,7 +59,7 @@ impl BloomFit {
     pub fn new(sides: impl Iterator<Item = (f64, f64)>) -> Self {
         let mut fit = Self { gram: DMat2::ZERO, sums: DVec2::ZERO, square: 0.0, shortest: f64::INFINITY, count: 0 };
         for (side, pixel) in sides {
-            let weight = (SIDE_NOISE * pixel).powi(-2);
+            let weight = maths::powi(SIDE_NOISE * pixel, -2);
             let row = DVec2::new(1.0, 2.0 * pixel);
             fit.gram += DMat2::from_cols(row * row.x, row * row.y) * weight;
             fit.sums += row * side * weight;
@@ -71,7 +72,7 @@ impl BloomFit {
     /// Solves for (s, b), the side in unwarped pixels and the bloom in photo pixels. The prior of the bloom is normal,
     /// with mean 0 and the given standard deviation in photo pixels.
     fn solve(&self, deviation: f64) -> DVec2 {
-        (self.gram + DMat2::from_diagonal(DVec2::new(0.0, deviation.powi(-2)))).inverse() * self.sums
+        (self.gram + DMat2::from_diagonal(DVec2::new(0.0, maths::powi(deviation, -2)))).inverse() * self.sums
     }
 
     /// The weighted mean of the measured sides.

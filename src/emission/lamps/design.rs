@@ -2,6 +2,7 @@
 
 use super::luminaire::Luminaire;
 use crate::geometry::polygon;
+use crate::maths;
 use glam::DVec2;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -46,7 +47,7 @@ impl Design {
                 [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|p| at(half * DVec2::from(p))).to_vec()
             }
             Shape::Ellipse => (0..ELLIPSE_CORNERS)
-                .map(|i| at(half * DVec2::from_angle(2.0 * PI * i as f64 / ELLIPSE_CORNERS as f64)))
+                .map(|i| at(half * maths::direction_at(2.0 * PI * i as f64 / ELLIPSE_CORNERS as f64)))
                 .collect(),
         }
     }
@@ -59,7 +60,7 @@ impl Design {
     pub fn describe(&self, centre: DVec2, lamp: &mut Luminaire) {
         let along_is_long = self.size.x >= self.size.y;
         let axis = if along_is_long { self.axis } else { self.axis.perp() };
-        let angle = axis.to_angle();
+        let angle = maths::angle_of(axis);
         lamp.centre = centre;
         lamp.size = if along_is_long { self.size } else { DVec2::new(self.size.y, self.size.x) };
         lamp.orientation = if angle > FRAC_PI_2 { angle - PI } else { angle };

@@ -22,6 +22,7 @@ use super::member::{MAX_ALIGNED_ANGLE, Member};
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::emission::exemplar::roles::Role;
+use crate::maths;
 use glam::DVec2;
 
 /// An ellipse is chosen only if its length is at most `MAX_ELLIPSE` times its width; longer shapes are tubes with round
@@ -143,7 +144,7 @@ pub fn fit(members: &[Member]) -> Option<Design> {
 /// The common axis of lamps: the mean angle of their enclosing rectangles, modulo a right angle and weighted by photo
 /// pixels. Returns the x axis if the mean is at most [`MAX_ALIGNED_ANGLE`] away from the x or the y axis.
 fn common_axis(members: &[&Member]) -> DVec2 {
-    let sum: DVec2 = members.iter().map(|m| DVec2::from_angle(4.0 * m.angle) * m.weight).sum();
-    let angle = sum.to_angle() / 4.0;
-    if angle.abs() <= MAX_ALIGNED_ANGLE { DVec2::X } else { DVec2::from_angle(angle) }
+    let sum: DVec2 = members.iter().map(|m| maths::direction_at(4.0 * m.angle) * m.weight).sum();
+    let angle = maths::angle_of(sum) / 4.0;
+    if angle.abs() <= MAX_ALIGNED_ANGLE { DVec2::X } else { maths::direction_at(angle) }
 }

@@ -3,6 +3,7 @@
 use super::bloom::{BloomFit, MIN_BLOOM_LAMPS, common_side};
 use super::member::{MAX_ALIGNED_ANGLE, Member, principal};
 use crate::emission::exemplar::measured_lamp::MAX_SITE_DIFFERENCE;
+use crate::maths;
 use glam::DVec2;
 
 /// Limits for discs that blur has elongated. [judged on 20 photos]
@@ -44,12 +45,12 @@ fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
 pub fn take_protruding(kinds: &mut Vec<Vec<Member>>) -> Vec<Vec<Member>> {
     let points_away = |kind: &Vec<Member>, min_cos: f64| kind.iter().all(|lamp| is_smeared(lamp, min_cos));
     let certain: Vec<&Member> =
-        kinds.iter().filter(|kind| points_away(kind, MAX_ALIGNED_ANGLE.cos())).flatten().collect();
+        kinds.iter().filter(|kind| points_away(kind, maths::cos(MAX_ALIGNED_ANGLE))).flatten().collect();
     let turns: DVec2 = certain.iter().map(|lamp| double_angle(lamp)).sum();
     // Let the angles of the lamps deviate from their mean with the standard deviation σ = `MAX_ALIGNED_ANGLE`. Then the
     // mean of the unit vectors at twice the angles has the length exp(-(2σ)² / 2). Lamps with a longer mean vector are
     // parallel.
-    let parallel = (-2.0 * MAX_ALIGNED_ANGLE.powi(2)).exp();
+    let parallel = maths::exp(-2.0 * maths::powi(MAX_ALIGNED_ANGLE, 2));
     if certain.is_empty() || turns.length() > parallel * certain.len() as f64 {
         return Vec::new();
     }
@@ -97,7 +98,7 @@ fn length(lamp: &Member) -> (f64, f64) {
 /// The unit vector at twice the angle of a lamp's long axis, the same for both directions of the axis.
 fn double_angle(lamp: &Member) -> DVec2 {
     let [[_, x], [_, y]] = principal(lamp.moments);
-    DVec2::from_angle(2.0 * y.atan2(x))
+    maths::direction_at(2.0 * maths::atan2(y, x))
 }
 
 /// Decides whether lamps are discs. Returns their diameter without bloom, in unwarped pixels; `None` if they are not

@@ -9,6 +9,7 @@
 
 use super::luminaire::Luminaire;
 use crate::geometry::polygon;
+use crate::maths;
 use glam::{DVec2, Vec2Swizzles};
 use std::collections::BTreeMap;
 
@@ -55,7 +56,7 @@ impl Measures {
 
     /// The bin of a lamp with these measures. Lamps in one bin are treated as equal.
     fn bin(self) -> [i64; 3] {
-        [self.area, self.sides.x, self.sides.y].map(|v| (v.max(1e-9).ln() * BINS_PER_E).round() as i64)
+        [self.area, self.sides.x, self.sides.y].map(|v| (maths::ln(v.max(1e-9)) * BINS_PER_E).round() as i64)
     }
 }
 

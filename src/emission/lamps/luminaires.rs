@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::image::Image;
 use crate::image::colour::luminance;
 use crate::job::Job;
+use crate::maths;
 use glam::{DVec2, DVec3};
 
 /// The 8-connected components of the texels at which `mask` is at least 0.5.
@@ -71,7 +72,7 @@ fn measure(label: u32, lamp: &Component, texture: &Image, lights: &LampCoverage)
 
     let ring = Ring::walk(lamp, &is_in, &|at| lights.coverage(at));
     let (outline, size) =
-        ring.outline(DVec2::from_angle(orientation), DVec2::new(texture.width as f64, texture.height as f64));
+        ring.outline(maths::direction_at(orientation), DVec2::new(texture.width as f64, texture.height as f64));
     Luminaire {
         centre: DVec2::new(low[0] as f64, low[1] as f64) + centre,
         size,
@@ -88,8 +89,8 @@ fn measure(label: u32, lamp: &Component, texture: &Image, lights: &LampCoverage)
 /// variance is equal in all directions. The argument holds the central second moments of the area.
 pub fn orientation([xx, xy, yy]: [f64; 3]) -> f64 {
     let (difference, cross) = (xx - yy, 2.0 * xy);
-    let anisotropy = difference.hypot(cross);
-    let angle = if anisotropy > 1e-6 * (xx + yy) { 0.5 * cross.atan2(difference) } else { 0.0 };
+    let anisotropy = maths::hypot(difference, cross);
+    let angle = if anisotropy > 1e-6 * (xx + yy) { 0.5 * maths::atan2(cross, difference) } else { 0.0 };
     // -π/2 and π/2 are the same axis. Rounding may produce either, so return π/2 for both.
     if angle <= -std::f64::consts::FRAC_PI_2 + 1e-12 { angle + std::f64::consts::PI } else { angle }
 }

@@ -7,6 +7,7 @@ use crate::emission::exemplar::foreshortening::LocalMap;
 use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::emission::exemplar::roles::Role;
 use crate::geometry::polygon;
+use crate::maths;
 use glam::{DMat2, DVec2};
 use std::f64::consts::FRAC_PI_2;
 
@@ -93,9 +94,9 @@ impl Member {
 /// unit vector (x, y) of the long axis.
 pub fn principal(moments: DMat2) -> [[f64; 2]; 2] {
     let (xx, xy, yy) = (moments.x_axis.x, moments.x_axis.y, moments.y_axis.y);
-    let (mean, spread) = ((xx + yy) / 2.0, ((xx - yy) / 2.0).hypot(xy));
-    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-    let axis = DVec2::from_angle(angle);
+    let (mean, spread) = ((xx + yy) / 2.0, maths::hypot((xx - yy) / 2.0, xy));
+    let angle = 0.5 * maths::atan2(2.0 * xy, xx - yy);
+    let axis = maths::direction_at(angle);
     [[(mean - spread).max(0.0).sqrt(), axis.x], [(mean + spread).sqrt(), axis.y]]
 }
 
@@ -127,7 +128,7 @@ pub fn rectangle_angle(corners: &[DVec2]) -> f64 {
     let edges = hull.iter().zip(hull.iter().cycle().skip(1)).filter_map(|(a, b)| (*b - *a).try_normalize());
     let area = |axis: &DVec2| polygon::extent(corners, *axis) * polygon::extent(corners, axis.perp());
     let smallest = edges.min_by(|a, b| area(a).total_cmp(&area(b)));
-    smallest.map_or(0.0, |axis| axis.to_angle().rem_euclid(FRAC_PI_2))
+    smallest.map_or(0.0, |axis| maths::angle_of(axis).rem_euclid(FRAC_PI_2))
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::try_vec;
 use crate::job::Job;
+use crate::maths;
 
 #[derive(Clone, Copy, Default)]
 struct Complex {
@@ -46,7 +47,7 @@ impl Autocorrelation {
         };
         let v = spectrum(&|i| (if valid[i] { 1.0 } else { 0.0 }, 0.0))?;
         let m = spectrum(&|i| (f64::from(values[i]), 0.0))?;
-        let s = spectrum(&|i| (f64::from(values[i]).powi(2), 0.0))?;
+        let s = spectrum(&|i| (maths::powi(f64::from(values[i]), 2), 0.0))?;
 
         // The signals are the validity v (1 or 0), the values m and their squares s; their transforms have the same
         // names. For signals a and b, write (a·b)(d) for the sum over all pixels p of a(p) b(p + d), where d is a
@@ -127,7 +128,7 @@ fn transform(mut grid: Vec<Complex>, columns: usize, rows: usize, job: Job) -> R
     for (width, height) in [(columns, rows), (rows, columns)] {
         let twiddles: Vec<Complex> = (0..width / 2)
             .map(|k| {
-                let (im, re) = (-std::f64::consts::TAU * k as f64 / width as f64).sin_cos();
+                let (im, re) = maths::sin_cos(-std::f64::consts::TAU * k as f64 / width as f64);
                 Complex { re, im }
             })
             .collect();

@@ -1,6 +1,7 @@
 //! Finds repeats: shifts that move lights onto lights. The autocorrelation of the lights has a peak at each of them.
 
 use super::correlation::Autocorrelation;
+use crate::maths;
 use glam::DVec2;
 
 /// Before the highest correlation is sought, this number of standard errors is subtracted from each correlation.
@@ -31,7 +32,7 @@ impl Repeat {
     /// The correlation r minus [`STANDARD_ERRORS`] standard errors, because r may be too high by chance. The standard
     /// error is (1 - r²) / √(n - 1), where n is `lights`, the number of lights in the overlap.
     pub fn lower_bound(&self, lights: f32) -> f32 {
-        self.value - STANDARD_ERRORS * (1.0 - self.value.powi(2)) / (lights - 1.0).max(1.0).sqrt()
+        self.value - STANDARD_ERRORS * (1.0 - maths::powi(self.value, 2)) / (lights - 1.0).max(1.0).sqrt()
     }
 }
 

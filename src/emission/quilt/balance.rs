@@ -7,6 +7,7 @@
 
 use crate::error::Result;
 use crate::image::try_vec;
+use crate::maths;
 
 /// Weight w of the penalty w e² / A, which is added to a patch's sum of squared differences. Here e is the excess light
 /// in pixels, and A is the mean area of a lamp in pixels. One surplus or missing lamp (e = A) costs w A, as much as a
@@ -55,7 +56,7 @@ impl Balance {
     /// The penalty for a patch that adds `excess` lit pixels to the excess that the current block has so far. It has
     /// the unit of a sum of squared differences over pixels.
     pub fn penalty(&self, excess: f64) -> f64 {
-        self.weight * (self.row[self.column] + excess).powi(2) / self.lamp
+        self.weight * maths::powi(self.row[self.column] + excess, 2) / self.lamp
     }
 
     /// Passes the excess of the current block on to its neighbours, and makes the next block the current one. The

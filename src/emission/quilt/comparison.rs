@@ -9,6 +9,7 @@ use crate::emission::exemplar::area_sums::AreaSums;
 use crate::error::Result;
 use crate::exec;
 use crate::job::Job;
+use crate::maths;
 use glam::Vec4;
 
 /// A patch counts as equally good as the best one if its error is at most a e + b, where e is the lowest error. The
@@ -73,7 +74,7 @@ impl<'a> Comparison<'a> {
         // Between two patches that match perfectly, the x and y distances in the metadata then differ by a mean square
         // of 2/12 = 1/6 pixel² each. Tolerate this difference: 2 · (1/6) · weight / cap² = weight / (3 cap²).
         let slack = match is_lattice {
-            true => (f64::from(guide.guide_weight) / (3.0 * guide.cap.powi(2))) as f32,
+            true => (f64::from(guide.guide_weight) / (3.0 * maths::powi(guide.cap, 2))) as f32,
             false => 0.0,
         };
         Ok(Self {

@@ -14,6 +14,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, try_vec};
 use crate::job::Job;
+use crate::maths;
 
 /// Value in place of the index of the nearest lit pixel, or of the nearest lit row of a column, if there is none.
 const NONE: u32 = u32::MAX;
@@ -75,7 +76,7 @@ fn nearest_feature(is_lit: impl Fn(usize) -> bool, width: usize, height: usize, 
     let mut nearest = try_vec(width * height, NONE)?;
     exec::for_rows(&mut nearest, width, job, |y, out| {
         let rows = &row_of[y * width..(y + 1) * width];
-        let height_at = |c: usize| f64::from(rows[c].abs_diff(y as u32)).powi(2);
+        let height_at = |c: usize| maths::powi(f64::from(rows[c].abs_diff(y as u32)), 2);
         let mut hull: Vec<(usize, f64)> = Vec::new();
         for c in (0..width).filter(|&c| rows[c] != NONE) {
             let start = loop {

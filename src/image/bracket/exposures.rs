@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::photo::PhotoMetadata;
 use crate::job::Job;
+use crate::maths;
 
 /// Standard deviation of the logarithm of a ratio that metadata state: shutter times, f-numbers and speeds are rounded
 /// to the names of the series, such as 1/15 s for 1/16 s and f/5.6 for f/5.66. [convention: ISO 516, ISO 12232]
@@ -31,7 +32,7 @@ pub fn stated_ratio(a: &PhotoMetadata, b: &PhotoMetadata) -> Option<f64> {
         _ => None,
     };
     let time = b.exposure_time? / a.exposure_time?;
-    Some(time * ratio(a.iso, b.iso)? / ratio(a.f_number, b.f_number)?.powi(2))
+    Some(time * ratio(a.iso, b.iso)? / maths::powi(ratio(a.f_number, b.f_number)?, 2))
 }
 
 /// Returns the indices of the photos in the order of their exposures, the shortest first: by the caller's exposures, by
@@ -73,10 +74,10 @@ impl ExposurePair {
     /// or show it.
     pub fn ratio(&self, measured: Option<Ratio>, params: &Params) -> Result<Ratio> {
         if !params.exposures.is_empty() {
-            let log = (params.exposures[self.long] / params.exposures[self.short]).ln();
+            let log = maths::ln(params.exposures[self.long] / params.exposures[self.short]);
             return Ok(Ratio { log, error: 0.0 });
         }
-        let stated = self.stated.map(|ratio| Ratio { log: ratio.ln(), error: ROUNDING });
+        let stated = self.stated.map(|ratio| Ratio { log: maths::ln(ratio), error: ROUNDING });
         match (params.source, stated, measured) {
             (Source::Metadata, Some(ratio), _) | (Source::Both, Some(ratio), None) => Ok(ratio),
             (Source::Pixels, _, Some(ratio)) | (Source::Both, None, Some(ratio)) => Ok(ratio),
@@ -106,15 +107,15 @@ impl ExposurePair {
                  LUXFER_EXPOSURE_SOURCE_METADATA, or set params.exposures",
                 self.short,
                 self.long,
-                stated.log.exp(),
-                measured.log.exp(),
+                maths::exp(stated.log),
+                maths::exp(measured.log),
                 100.0 * measured.error
             )));
         }
-        let weights = [stated, measured].map(|r| r.error.max(MIN_ERROR).powi(-2));
+        let weights = [stated, measured].map(|r| maths::powi(r.error.max(MIN_ERROR), -2));
         let total = weights[0] + weights[1];
         let log = (weights[0] * stated.log + weights[1] * measured.log) / total;
-        Ok(Ratio { log, error: total.powf(-0.5) })
+        Ok(Ratio { log, error: maths::powf(total, -0.5) })
     }
 }
 
@@ -126,11 +127,12 @@ pub fn chain(order: &[usize], ratios: &[Ratio], reference: usize) -> Vec<Ratio> 
     let start = order.iter().position(|&photo| photo == reference).unwrap_or(0);
     for k in start..ratios.len() {
         let before = out[order[k]];
-        out[order[k + 1]] = Ratio { log: before.log + ratios[k].log, error: before.error.hypot(ratios[k].error) };
+        out[order[k + 1]] =
+            Ratio { log: before.log + ratios[k].log, error: maths::hypot(before.error, ratios[k].error) };
     }
     for k in (0..start).rev() {
         let after = out[order[k + 1]];
-        out[order[k]] = Ratio { log: after.log - ratios[k].log, error: after.error.hypot(ratios[k].error) };
+        out[order[k]] = Ratio { log: after.log - ratios[k].log, error: maths::hypot(after.error, ratios[k].error) };
     }
     out
 }

@@ -28,6 +28,7 @@ use crate::exec;
 use crate::image::Image;
 use crate::image::photo::PhotoMetadata;
 use crate::job::Job;
+use crate::maths;
 use combine::{Exposed, Stack};
 use exposures::ExposurePair;
 use frame::Frame;
@@ -62,10 +63,10 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
     if let Some(k) = relative.iter().position(|ratio| !(ratio.log.abs() <= MAX_LOG_RATIO)) {
         return Err(Error::argument(format!(
             "the exposure of photos[{k}] is {:.2e} times that of the reference; it must lie in [1e-18, 1e18]",
-            relative[k].log.exp()
+            maths::exp(relative[k].log)
         )));
     }
-    let exposed = |&k: &usize| Exposed { frame: frames[k], exposure: relative[k].log.exp() as f32 };
+    let exposed = |&k: &usize| Exposed { frame: frames[k], exposure: maths::exp(relative[k].log) as f32 };
     let stack = Stack {
         photos: order.iter().map(exposed).collect(),
         disagreements,
@@ -74,7 +75,7 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
     let merged = combine::combine(&stack, job.part(0.8, 1.0))?;
     let pixels = (first.width * first.height) as f64;
     let photo = |k: usize| PhotoReport {
-        exposure: relative[k].log.exp(),
+        exposure: maths::exp(relative[k].log),
         error: relative[k].error,
         stated: exposures::stated_ratio(&metadata[reference], &metadata[k]).unwrap_or(0.0),
         shift: frames[k].shift,
@@ -153,7 +154,7 @@ fn compare(
         let samples = ratio::samples(short, long, size, job.part(0.0, 0.2))?;
         let ratio = pair.ratio(ratio::measure(&samples, long.clip)?, params)?;
         if !params.keep_moving {
-            let factor = ratio.log.exp() as f32;
+            let factor = maths::exp(ratio.log) as f32;
             let noise = Noise::measure(&samples, factor)?;
             disagreements.push(motion::disagreement([short, long], factor, &noise, size, job.part(0.2, 1.0))?);
         }

@@ -3,6 +3,7 @@
 use super::ratio::{MAD_TO_SIGMA, Sample};
 use crate::error::Result;
 use crate::image::try_push;
+use crate::maths;
 
 /// Levels of light: `LEVELS` intervals of half an octave each, from 2^-16 to 2^16 (`LOWEST` is the exponent of the
 /// first). [convention]
@@ -44,8 +45,8 @@ impl Noise {
         }
         Ok(Self(std::array::from_fn(|k| {
             let [deviation, spread] = nearest(&found, k);
-            let light = (LOWEST + (k as f32 + 0.5) / PER_OCTAVE).exp2();
-            [deviation, spread.min(MAX_SPREAD.hypot((MAX_PHOTON_NOISE / light).sqrt()))]
+            let light = maths::exp2(LOWEST + (k as f32 + 0.5) / PER_OCTAVE);
+            [deviation, spread.min(maths::hypot(MAX_SPREAD, (MAX_PHOTON_NOISE / light).sqrt()))]
         })))
     }
 
@@ -75,7 +76,7 @@ fn nearest(found: &[Option<[f32; 2]>; LEVELS], level: usize) -> [f32; 2] {
     let measured = (0..LEVELS).filter_map(|k| Some((k, found[k]?[1])));
     measured.min_by_key(|(k, _)| k.abs_diff(level)).map_or([0.0, MAX_SPREAD], |(k, spread)| {
         let octaves = (k as f32 - level as f32) / PER_OCTAVE;
-        [0.0, spread * (0.5 * octaves.max(0.0)).exp2()]
+        [0.0, spread * maths::exp2(0.5 * octaves.max(0.0))]
     })
 }
 

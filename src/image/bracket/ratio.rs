@@ -12,6 +12,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{try_collect, try_vec};
 use crate::job::Job;
+use crate::maths;
 
 /// Approximate maximum number of pixels that are read; a larger photo is read at an even lattice of pixels. With 1 % of
 /// noise, this number of pixels determines the ratio to 0.003 %.
@@ -102,7 +103,7 @@ pub fn measure(samples: &[Sample], clip: f32) -> Result<Option<Ratio>> {
         ratio = sums[0] / sums[1];
     }
     let error = error_of(&well, &weights, ratio).filter(|_| ratio.is_finite() && ratio > 0.0);
-    Ok(error.map(|error| Ratio { log: ratio.ln(), error }))
+    Ok(error.map(|error| Ratio { log: maths::ln(ratio), error }))
 }
 
 /// Returns the weighted median of the ratios of single pixels. The weights are the reciprocal variances of the ratios'
@@ -112,7 +113,7 @@ fn first_guess(samples: &[Sample]) -> Option<f64> {
     let width = (LOG_RANGE[1] - LOG_RANGE[0]) / LOG_BINS as f64;
     for s in samples {
         let (short, long) = (f64::from(s.short), f64::from(s.long));
-        let bin = ((long / short).ln() - LOG_RANGE[0]) / width;
+        let bin = (maths::ln(long / short) - LOG_RANGE[0]) / width;
         bins[(bin.max(0.0) as usize).min(LOG_BINS - 1)] += long * short / (long + short);
     }
     let half = 0.5 * bins.iter().sum::<f64>();
@@ -121,7 +122,7 @@ fn first_guess(samples: &[Sample]) -> Option<f64> {
         below += weight;
         below >= half && below > 0.0
     })?;
-    Some((LOG_RANGE[0] + (bin as f64 + 0.5) * width).exp())
+    Some(maths::exp(LOG_RANGE[0] + (bin as f64 + 0.5) * width))
 }
 
 /// Whether a pixel is well exposed in both photos. The test uses the sum of the pixel's two values, so that noise does
@@ -168,6 +169,6 @@ fn error_of(samples: &[Sample], weights: &[[f64; 2]], ratio: f64) -> Option<f64>
     let count = blocks.iter().filter(|[_, short]| *short != 0.0).count();
     let total: f64 = blocks.iter().map(|[_, short]| short).sum();
     let squares: f64 = blocks.iter().map(|[residual, _]| residual * residual).sum();
-    let variance = count as f64 / (count as f64 - 1.0) * squares / (ratio * total).powi(2);
+    let variance = count as f64 / (count as f64 - 1.0) * squares / maths::powi(ratio * total, 2);
     (count >= MIN_BLOCKS).then(|| variance.sqrt())
 }

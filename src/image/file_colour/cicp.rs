@@ -6,6 +6,7 @@ use super::curve::{Curve, bt709, hlg, pq};
 use super::space::Space;
 use crate::error::Result;
 use crate::image::colour::srgb_to_linear;
+use crate::maths;
 
 pub const PQ: u8 = 16;
 pub const HLG: u8 = 18;
@@ -20,8 +21,8 @@ const HLG_WHITE: f64 = 0.75;
 pub fn space(primaries: u8, transfer: u8, full: impl Fn(f64) -> f64) -> Result<Option<Space>> {
     let function: fn(f64) -> f64 = match transfer {
         1 | 6 | 14 | 15 => bt709,
-        4 => |code| code.max(0.0).powf(2.2),
-        5 => |code| code.max(0.0).powf(2.8),
+        4 => |code| maths::powf(code.max(0.0), 2.2),
+        5 => |code| maths::powf(code.max(0.0), 2.8),
         8 => |code| code,
         13 => |code| f64::from(srgb_to_linear(code as f32)),
         PQ => |code| pq(code) / PQ_WHITE,

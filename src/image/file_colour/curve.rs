@@ -3,6 +3,7 @@
 use crate::error::Result;
 use crate::image::colour::{linear_to_srgb, srgb_to_linear};
 use crate::image::try_collect;
+use crate::maths;
 use std::sync::Arc;
 
 /// Number of nodes of a sampled curve: one for each 16-bit code value. The 8-bit codes fall on every 257th node.
@@ -51,22 +52,22 @@ pub fn is_srgb(function: impl Fn(f64) -> f64) -> bool {
 pub fn pq(code: f64) -> f64 {
     let (m1, m2) = (2610.0 / 16_384.0, 2523.0 / 4096.0 * 128.0);
     let (c1, c2, c3) = (3424.0 / 4096.0, 2413.0 / 4096.0 * 32.0, 2392.0 / 4096.0 * 32.0);
-    let root = code.max(0.0).powf(1.0 / m2);
-    10_000.0 * ((root - c1).max(0.0) / (c2 - c3 * root)).powf(1.0 / m1)
+    let root = maths::powf(code.max(0.0), 1.0 / m2);
+    10_000.0 * maths::powf((root - c1).max(0.0) / (c2 - c3 * root), 1.0 / m1)
 }
 
 /// Hybrid log-gamma: relative scene light, with a peak of 1, for a code value in `[0, 1]` (Recommendation ITU-R
 /// BT.2100-2, table 5).
 pub fn hlg(code: f64) -> f64 {
     let (a, b, c) = (0.178_832_77, 0.284_668_92, 0.559_910_73);
-    if code <= 0.5 { code * code / 3.0 } else { (((code - c) / a).exp() + b) / 12.0 }
+    if code <= 0.5 { code * code / 3.0 } else { (maths::exp((code - c) / a) + b) / 12.0 }
 }
 
 /// The inverse of the camera curve of Rec.709: relative scene light for a code value in `[0, 1]` (Recommendation ITU-R
 /// BT.709-6, 1.2).
 pub fn bt709(code: f64) -> f64 {
     let (alpha, beta) = (1.099_296_826_809_44, 0.018_053_968_510_807);
-    if code < 4.5 * beta { code / 4.5 } else { ((code + alpha - 1.0) / alpha).powf(1.0 / 0.45) }
+    if code < 4.5 * beta { code / 4.5 } else { maths::powf((code + alpha - 1.0) / alpha, 1.0 / 0.45) }
 }
 
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::space::Space;
 use super::{cicp, icc};
 use crate::error::Result;
 use crate::image::containers::png_chunks;
+use crate::maths;
 
 /// Factor by which `gAMA` and `cHRM` multiply the numbers that they store. [convention: PNG]
 const UNIT: f64 = 100_000.0;
@@ -83,7 +84,7 @@ fn chromaticities(chunk: &[u8]) -> Option<Chromaticities> {
 fn by_numbers(exponent: Option<f64>, chromaticities: Option<Chromaticities>) -> Result<Space> {
     let Some(matrix) = chromaticities.unwrap_or(Chromaticities::REC709).to_rec709() else { return Ok(Space::Unusable) };
     let curve = match exponent {
-        Some(exponent) => Curve::new(|code| code.powf(exponent))?,
+        Some(exponent) => Curve::new(|code| maths::powf(code, exponent))?,
         None if is_identity(matrix) => return Ok(Space::Native),
         None => Curve::srgb()?,
     };

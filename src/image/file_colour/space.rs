@@ -5,6 +5,7 @@ use super::conversion::Conversion;
 use super::curve::Curve;
 use super::inks::Inks;
 use crate::error::Result;
+use crate::maths;
 use glam::DMat3;
 
 /// How the colours of a picture were interpreted.
@@ -62,7 +63,7 @@ impl ExifColour {
             Self::Unstated => Ok(Space::Unstated),
             Self::Srgb => Ok(Space::Native),
             Self::AdobeRgb => {
-                let curve = Curve::new(|v| v.powf(ADOBE_GAMMA))?;
+                let curve = Curve::new(|v| maths::powf(v, ADOBE_GAMMA))?;
                 Ok(Chromaticities::ADOBE_RGB.to_rec709().map_or(Space::Unusable, |matrix| {
                     Space::Other(Conversion::new([curve.clone(), curve.clone(), curve], matrix))
                 }))

@@ -4,6 +4,7 @@ use crate::image::containers::{jpeg_segments, png_chunks, riff_chunks};
 use crate::image::file_colour::ExifColour;
 use crate::image::orientation::Orientation;
 use crate::image::tiff::ifd::{Directory, Ifds};
+use crate::maths;
 
 /// EXIF tags. The first two are in the directory of the picture, the others in the EXIF directory unless noted.
 mod tag {
@@ -89,8 +90,8 @@ impl Exif {
         let within = |value: Option<f64>, low: f64, high: f64| value.filter(|v| (low..=high).contains(v));
 
         // Older cameras write logarithms only: 2 log2 N for the f-number N, and -log2 t for the exposure time t.
-        let f_number = positive(tag::F_NUMBER).or_else(|| notes.number(tag::APERTURE).map(|v| (v / 2.0).exp2()));
-        let time = positive(tag::EXPOSURE_TIME).or_else(|| notes.number(tag::SHUTTER_SPEED).map(|v| (-v).exp2()));
+        let f_number = positive(tag::F_NUMBER).or_else(|| notes.number(tag::APERTURE).map(|v| maths::exp2(v / 2.0)));
+        let time = positive(tag::EXPOSURE_TIME).or_else(|| notes.number(tag::SHUTTER_SPEED).map(|v| maths::exp2(-v)));
         let iso = positive(tag::SENSITIVITY).filter(|v| *v != SENSITIVITY_ELSEWHERE).or_else(|| {
             let tags = [tag::STANDARD_OUTPUT_SENSITIVITY, tag::RECOMMENDED_EXPOSURE_INDEX, tag::ISO_SPEED];
             tags.into_iter().find_map(positive)

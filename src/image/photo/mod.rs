@@ -7,6 +7,7 @@ mod tests;
 pub use crate::image::orientation::Orientation;
 
 use crate::image::file_colour::FileColour;
+use crate::maths;
 pub(super) use exif::{Exif, read};
 
 /// Relative standard deviation of a focal length from EXIF. The focal length marked on a lens is accurate to about 5 %.
@@ -104,19 +105,19 @@ fn focal(exif: &Exif, width: f64, height: f64) -> Option<f64> {
     // Detect cropping: editors that crop a photo keep the recorded size. Editors that rotate it may exchange the
     // recorded sides.
     let shape = |width: f64, height: f64| width.max(height) / width.min(height);
-    let is_whole = |[w, h]: [f64; 2]| (shape(w, h) / shape(width, height)).ln().abs() < SAME_SHAPE;
+    let is_whole = |[w, h]: [f64; 2]| maths::ln(shape(w, h) / shape(width, height)).abs() < SAME_SHAPE;
     if !exif.recorded.is_none_or(is_whole) {
         return None;
     }
-    let diagonal = width.hypot(height);
+    let diagonal = maths::hypot(width, height);
     let by_film = exif.focal_35.map(|focal| focal * diagonal / FILM_DIAGONAL);
-    let scale = exif.recorded.map_or(1.0, |[w, h]| diagonal / w.hypot(h));
+    let scale = exif.recorded.map_or(1.0, |[w, h]| diagonal / maths::hypot(w, h));
     let by_sensor =
         exif.focal.zip(exif.pixels_per_millimetre).map(|(focal, per_millimetre)| focal * per_millimetre * scale);
     // The estimate from the sensor is more precise, but wrong in some cameras. Use it unless the 35 mm equivalent
     // contradicts it.
     match (by_film, by_sensor) {
-        (Some(film), Some(sensor)) if (sensor / film).ln().abs() > AGREEMENT => Some(film),
+        (Some(film), Some(sensor)) if maths::ln(sensor / film).abs() > AGREEMENT => Some(film),
         (_, Some(sensor)) => Some(sensor),
         (film, None) => film,
     }

@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::try_collect;
 use crate::job::Job;
+use crate::maths;
 
 /// Number of elements per unit of parallel work.
 const ROW: usize = 4096;
@@ -81,20 +82,20 @@ impl Unary {
             }
             Self::Elu(scale) => {
                 if x < 0.0 {
-                    scale * x.exp_m1()
+                    scale * maths::exp_m1(x)
                 } else {
                     x
                 }
             }
-            Self::Sigmoid => 1.0 / (1.0 + (-x).exp()),
+            Self::Sigmoid => 1.0 / (1.0 + maths::exp(-x)),
             Self::HardSigmoid(slope, offset) => (slope * x + offset).clamp(0.0, 1.0),
             Self::HardSwish => x * (x / 6.0 + 0.5).clamp(0.0, 1.0),
-            Self::Tanh => x.tanh(),
-            Self::Softplus => x.max(0.0) + (-x.abs()).exp().ln_1p(),
+            Self::Tanh => maths::tanh(x),
+            Self::Softplus => x.max(0.0) + maths::ln_1p(maths::exp(-x.abs())),
             Self::Erf => erf(x),
             Self::Gelu => 0.5 * x * (1.0 + erf(x * std::f32::consts::FRAC_1_SQRT_2)),
-            Self::Exp => x.exp(),
-            Self::Log => x.ln(),
+            Self::Exp => maths::exp(x),
+            Self::Log => maths::ln(x),
             Self::Sqrt => x.sqrt(),
             Self::Reciprocal => 1.0 / x,
             Self::Neg => -x,
@@ -102,8 +103,8 @@ impl Unary {
             Self::Floor => x.floor(),
             Self::Ceil => x.ceil(),
             Self::Round => x.round_ties_even(),
-            Self::Sin => x.sin(),
-            Self::Cos => x.cos(),
+            Self::Sin => maths::sin(x),
+            Self::Cos => maths::cos(x),
         }
     }
 }
@@ -113,7 +114,7 @@ pub fn erf(x: f32) -> f32 {
     let z = f64::from(x.abs());
     let t = 1.0 / (1.0 + 0.327_591_1 * z);
     let series = [1.061_405_429, -1.453_152_027, 1.421_413_741, -0.284_496_736, 0.254_829_592];
-    let value = 1.0 - series.into_iter().fold(0.0, |sum, c| (sum + c) * t) * (-z * z).exp();
+    let value = 1.0 - series.into_iter().fold(0.0, |sum, c| (sum + c) * t) * maths::exp(-z * z);
     (value as f32).copysign(x)
 }
 
@@ -269,7 +270,7 @@ fn pair(op: Binary, left: &Tensor, right: &Tensor, call: &Call) -> Result<Tensor
                 Binary::Div => floats!(|a, b| a / b),
                 // Fast path: most powers are squares.
                 Binary::Pow if b.len() == 1 && b[0] == 2.0 => floats!(|a, _| a * a),
-                Binary::Pow => floats!(|a: f32, b| a.powf(b)),
+                Binary::Pow => floats!(|a: f32, b| maths::powf(a, b)),
                 Binary::Min => floats!(|a: f32, b| a.min(b)),
                 Binary::Max => floats!(|a: f32, b| a.max(b)),
                 Binary::PRelu => floats!(|a, b| if a < 0.0 { a * b } else { a }),

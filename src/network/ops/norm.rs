@@ -4,6 +4,7 @@ use super::super::tensor::Tensor;
 use super::call::Call;
 use crate::error::{Error, Result};
 use crate::exec;
+use crate::maths;
 
 /// Computes `scale (x - mean) / √(variance + ε) + bias`. Inputs 1 to 4 hold scale, bias, mean and variance of each
 /// channel.
@@ -70,7 +71,7 @@ pub fn layer(axis: i64, epsilon: f32, call: &Call) -> Result<Tensor> {
 fn standardise(values: &[f32], epsilon: f32, out: &mut [f32]) {
     let n = values.len() as f64;
     let mean = values.iter().map(|&v| f64::from(v)).sum::<f64>() / n;
-    let variance = values.iter().map(|&v| (f64::from(v) - mean).powi(2)).sum::<f64>() / n;
+    let variance = values.iter().map(|&v| maths::powi(f64::from(v) - mean, 2)).sum::<f64>() / n;
     let factor = 1.0 / (variance + f64::from(epsilon)).sqrt();
     out.iter_mut().zip(values).for_each(|(out, &v)| *out = ((f64::from(v) - mean) * factor) as f32);
 }
@@ -90,7 +91,7 @@ pub fn softmax(axis: i64, flattens: bool, call: &Call) -> Result<Tensor> {
             let max = items().fold(f32::NEG_INFINITY, |max, j| max.max(values[j]));
             let mut sum = 0.0;
             for j in items() {
-                out[j] = (values[j] - max).exp();
+                out[j] = maths::exp(values[j] - max);
                 sum += out[j];
             }
             items().for_each(|j| out[j] /= sum);

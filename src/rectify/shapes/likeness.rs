@@ -5,6 +5,7 @@ use crate::geometry::robust::weighted_median;
 use crate::geometry::{Perspective, Radial};
 use crate::image::Image;
 use crate::image::regions::Regions;
+use crate::maths;
 use crate::{error::Result, image::try_vec};
 use glam::{DMat2, DVec2, DVec3};
 
@@ -66,7 +67,7 @@ struct Form {
 /// angle of the first axis.
 fn axes(c: DMat2) -> ([f64; 2], DVec2) {
     let (mean, half, cross) = (0.5 * (c.x_axis.x + c.y_axis.y), 0.5 * (c.x_axis.x - c.y_axis.y), c.x_axis.y);
-    let spread = half.hypot(cross);
+    let spread = maths::hypot(half, cross);
     ([mean + spread, (mean - spread).max(f64::EPSILON * mean)], DVec2::new(half, cross).normalize_or_zero())
 }
 
@@ -74,7 +75,7 @@ fn axes(c: DMat2) -> ([f64; 2], DVec2) {
 /// [`MIN_SEMIAXIS`].
 fn without_border(covariance: DMat2, width: f64) -> DMat2 {
     let (variances, double_angle) = axes(covariance);
-    let [a, b] = variances.map(|variance| ((2.0 * variance.sqrt() - width).max(MIN_SEMIAXIS) / 2.0).powi(2));
+    let [a, b] = variances.map(|variance| maths::powi((2.0 * variance.sqrt() - width).max(MIN_SEMIAXIS) / 2.0, 2));
     let (mean, spread) = (0.5 * (a + b), 0.5 * (a - b) * double_angle);
     DMat2::from_cols(DVec2::new(mean + spread.x, spread.y), DVec2::new(spread.y, mean - spread.x))
 }
@@ -90,7 +91,8 @@ impl Shape {
         }
         // The variances of a uniform ellipse are a quarter of its squared semi-axes.
         let [a, b] = axes(covariance).0.map(|variance| BORDER_ERROR / (2.0 * variance.sqrt()));
-        let (size_error, stretch_error) = ((a + b).hypot(VARIETY), (0.5 * a.hypot(b)).hypot(VARIETY));
+        let (size_error, stretch_error) =
+            (maths::hypot(a + b, VARIETY), maths::hypot(0.5 * maths::hypot(a, b), VARIETY));
         Self { centre: lens.ideal(centre), covariances, size_error, stretch_error }
     }
 
@@ -107,7 +109,7 @@ impl Shape {
         let column = |axis: DVec3| DVec2::new(right.dot(derivative(axis)), down.dot(derivative(axis)));
         let jacobian = DMat2::from_cols(column(DVec3::X), column(DVec3::Y));
         let ([long, short], angle) = axes(jacobian * self.covariances[bloom] * jacobian.transpose());
-        Some(Form { log_size: 0.5 * (long * short).ln(), stretch: angle * (0.5 * (long / short).ln()) })
+        Some(Form { log_size: 0.5 * maths::ln(long * short), stretch: angle * (0.5 * maths::ln(long / short)) })
     }
 }
 
@@ -162,7 +164,7 @@ pub fn rough_cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
 }
 
 fn min_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
-    let cost = |bloom: usize| (BLOOMS[bloom] / BLOOM_SPREAD).powi(2) + cost_without(shapes, normal, focal, bloom);
+    let cost = |bloom: usize| maths::powi(BLOOMS[bloom] / BLOOM_SPREAD, 2) + cost_without(shapes, normal, focal, bloom);
     (0..BLOOMS.len()).step_by(step).map(cost).fold(f64::INFINITY, f64::min)
 }
 
@@ -174,16 +176,16 @@ fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f6
         forms.push((form, shape));
     }
     let median = |value: &dyn Fn(&Form) -> f64| {
-        let weighted = forms.iter().map(|(form, shape)| (value(form), shape.size_error.powi(-2)));
+        let weighted = forms.iter().map(|(form, shape)| (value(form), maths::powi(shape.size_error, -2)));
         weighted_median(weighted.collect()).unwrap_or(0.0)
     };
     let log_size = median(&|form| form.log_size);
     let stretch = DVec2::new(median(&|form| form.stretch.x), median(&|form| form.stretch.y));
     let by_size: f64 =
-        forms.iter().map(|(form, shape)| robust(((form.log_size - log_size) / shape.size_error).powi(2))).sum();
+        forms.iter().map(|(form, shape)| robust(maths::powi((form.log_size - log_size) / shape.size_error, 2))).sum();
     let by_stretch = |common: DVec2| -> f64 {
         let square =
-            |form: &Form, shape: &Shape| (form.stretch - common).length_squared() / shape.stretch_error.powi(2);
+            |form: &Form, shape: &Shape| (form.stretch - common).length_squared() / maths::powi(shape.stretch_error, 2);
         forms.iter().map(|(form, shape)| robust(square(form, shape))).sum()
     };
     by_size + by_stretch(DVec2::ZERO).min(by_stretch(stretch) + STRETCH_COST)
@@ -192,5 +194,5 @@ fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f6
 /// Returns the cost of a shape; `square` is its squared deviation divided by the variance. From about [`OUTLIER`] on,
 /// the cost grows more slowly than `square` (Cauchy's function).
 fn robust(square: f64) -> f64 {
-    OUTLIER * (square / OUTLIER).ln_1p()
+    OUTLIER * maths::ln_1p(square / OUTLIER)
 }

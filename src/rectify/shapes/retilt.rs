@@ -3,9 +3,10 @@
 use super::likeness::{self, Shape};
 use super::tilt::{Tilt, TiltEstimate};
 use crate::geometry::{FocalSource, Perspective, Segment};
+use crate::maths;
 use crate::rectify::sphere::{Frame, WeightedLine, project, refine, rms_angle, round_covariance};
 use crate::rectify::{VanishingPoint, View, camera, manhattan};
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
 /// Limits for accepting the correction of a tilt by the lines. `MAX_LOSS`: maximum increase of the shapes' cost over
@@ -81,7 +82,7 @@ fn turned(lines: &[WeightedLine], normal: DVec3, focal: f64) -> DMat3 {
     let along = normal.any_orthonormal_vector();
     let directions = |k: usize| {
         let angle = k as f64 / ROTATIONS as f64 * FRAC_PI_2;
-        let right = DQuat::from_axis_angle(normal, angle) * along;
+        let right = maths::rotation_about(normal, angle) * along;
         [right, normal.cross(right)]
     };
     let explained = |k: usize| -> f64 {

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::geometry::linear;
 use crate::job::Job;
+use crate::maths;
 use crate::rectify::camera::FREE_ERROR;
 use crate::rectify::focal::FocalPrior;
 use crate::rectify::sphere::{STRAIGHTNESS, outer, round_covariance};
@@ -81,13 +82,13 @@ impl TotalCost<'_> {
         if cosine < MIN_COSINE {
             return f64::INFINITY;
         }
-        let by_focal = ((tilt.focal / self.expected.focal).ln() / self.expected.spread).powi(2);
-        let by_lines = (cosine.min(1.0).acos() / self.lines_error).powi(2).min(MAX_LINES_COST);
+        let by_focal = maths::powi(maths::ln(tilt.focal / self.expected.focal) / self.expected.spread, 2);
+        let by_lines = maths::powi(maths::acos(cosine.min(1.0)) / self.lines_error, 2).min(MAX_LINES_COST);
         // Compute the roll from the normal, but only for floors and ceilings. Roll does not change the normal of a
         // wall ahead of the camera, and this formula does not hold for side walls.
-        let roll = tilt.normal.x.atan2(tilt.normal.y.abs());
+        let roll = maths::atan2(tilt.normal.x, tilt.normal.y.abs());
         let is_level = self.lines.y.abs() > self.lines.x.abs().max(self.lines.z.abs());
-        let by_roll = if is_level { (roll / ROLL_ERROR).powi(2).min(MAX_ROLL_COST) } else { 0.0 };
+        let by_roll = if is_level { maths::powi(roll / ROLL_ERROR, 2).min(MAX_ROLL_COST) } else { 0.0 };
         cost(self.shapes, tilt.normal, tilt.focal) + by_focal + by_lines + by_roll
     }
 }
@@ -103,7 +104,7 @@ pub fn find(
     let total = TotalCost { shapes, lines: by_lines.normal, lines_error: error, expected };
     let is_known = expected.spread < KNOWN_FOCAL;
     let steps = if is_known { 0 } else { FOCALS };
-    let focals = (-steps..=steps).map(|k| expected.focal * (FOCAL_STEP * f64::from(k)).exp());
+    let focals = (-steps..=steps).map(|k| expected.focal * maths::exp(FOCAL_STEP * f64::from(k)));
     let focals: Vec<f64> = focals.chain([by_lines.focal]).collect();
 
     // Find the best focal length for every direction, then refine the tilts with the least cost. Refining a single
@@ -126,7 +127,7 @@ pub fn find(
 fn direction(k: usize) -> DVec3 {
     let z = (2 * k + 1) as f64 / DIRECTIONS as f64 - 1.0;
     let golden_angle = std::f64::consts::PI * (3.0 - 5f64.sqrt());
-    let (sin, cos) = (golden_angle * k as f64).sin_cos();
+    let (sin, cos) = maths::sin_cos(golden_angle * k as f64);
     let radius = (1.0 - z * z).sqrt();
     DVec3::new(radius * cos, radius * sin, z)
 }
@@ -134,7 +135,7 @@ fn direction(k: usize) -> DVec3 {
 /// Returns the tilt after a step of the normal along two tangents and a step of the logarithm of the focal length.
 fn moved(tilt: &Tilt, [right, down, focal]: [f64; 3]) -> Tilt {
     let (a, b) = tilt.normal.any_orthonormal_pair();
-    Tilt { normal: (tilt.normal + a * right + b * down).normalize(), focal: tilt.focal * focal.exp() }
+    Tilt { normal: (tilt.normal + a * right + b * down).normalize(), focal: tilt.focal * maths::exp(focal) }
 }
 
 /// Refines a tilt by a pattern search over two tangents of the normal and, unless `is_known`, the logarithm of the

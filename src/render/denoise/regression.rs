@@ -17,6 +17,7 @@ use super::planes::{Planes, Shift};
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::job::Job;
+use crate::maths;
 use crate::simd::widest;
 
 /// Number of taps along each axis, on either side of a pixel. [convention: 5 x 5 taps, as in à-trous filters]
@@ -110,7 +111,7 @@ impl FilterPass<'_> {
             _ => self.guides.distances(y, &at, distance),
         }
         let place = tap.map(|t| t as f32);
-        let gauss = (-0.5 * (place[0] * place[0] + place[1] * place[1]) / (SIGMA * SIGMA)).exp();
+        let gauss = maths::exp(-0.5 * (place[0] * place[0] + place[1] * place[1]) / (SIGMA * SIGMA));
         for (half, sums) in scratch.sums.iter_mut().enumerate() {
             let values = self.light.part(at.row, 3 * half, at.there, at.span);
             let confidence = &self.confidence.row(at.row, half)[at.there..at.there + at.span];

@@ -27,6 +27,7 @@ use super::statistics::{Statistics, whole};
 use crate::error::Result;
 use crate::image::try_vec;
 use crate::job::Job;
+use crate::maths;
 use crate::render::params::Params;
 
 /// Paths per pixel, in all, after the first pass that follows the coarse image.
@@ -155,7 +156,8 @@ impl<'p> AdaptiveSampler<'p> {
         if pixel_error > 0.0 {
             let relative_intervals = accumulator.relative_intervals(MIN_RELATIVE_LUMINANCE * mean, job)?;
             for ((paths, squared_interval), tile) in target_paths.iter_mut().zip(relative_intervals).zip(statistics) {
-                *paths = paths.max(f64::from(tile.max_paths) * squared_interval / f64::from(pixel_error).powi(2));
+                *paths =
+                    paths.max(f64::from(tile.max_paths) * squared_interval / maths::powi(f64::from(pixel_error), 2));
             }
         }
         Ok(target_paths)
@@ -189,7 +191,7 @@ impl<'p> AdaptiveSampler<'p> {
                 / f64::from(whole.pixels)
         };
         let left = mean_of(&|t| if path_variances[t] > 0.0 { path_variances[t] / deviations[t] } else { 0.0 });
-        let needed = left / (target * whole.mean_radiance()).powi(2);
+        let needed = left / maths::powi(target * whole.mean_radiance(), 2);
         let allowed = f64::from(self.params.samples) / mean_of(&|t| deviations[t]);
         target_paths.iter_mut().zip(&deviations).for_each(|(w, d)| *w = w.max(needed.min(allowed) * d));
         Ok(())

@@ -31,6 +31,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::try_collect;
 use crate::job::Job;
+use crate::maths;
 use crate::render::params::{self, Params};
 use crate::render::world::World;
 use crate::rng::Rng;
@@ -157,8 +158,9 @@ pub fn run(
 
     // Estimate the mean and the mean square of the radiance: take the estimates of `tile_moments` over all tiles, and
     // correct them by the errors found in the pilot tiles (difference estimator).
-    let seen =
-        |power: i32| (0..grid.tiles()).map(|t| grid.area(t) as f64 * expected[t].mean.powi(power)).sum::<f64>() / area;
+    let seen = |power: i32| {
+        (0..grid.tiles()).map(|t| grid.area(t) as f64 * maths::powi(expected[t].mean, power)).sum::<f64>() / area
+    };
     let brightness = (seen(1) + mean(&last, &|t| t.mean - t.expected[0])).max(f64::MIN_POSITIVE);
     let square = seen(2) + mean(&last, &|t| t.square - t.expected[1]);
     Ok(Pilot {
@@ -277,7 +279,7 @@ fn tile_sums(grid: Grid, chosen: &PilotTile) -> TileSums {
         sum.square += ((mean * mean).element_sum() - variance.element_sum()) / 3.0;
         sum.variance += variance.element_sum() / 3.0;
     }
-    sum.expected = [1, 2].map(|power| sum.pixels * chosen.expected.powi(power));
+    sum.expected = [1, 2].map(|power| sum.pixels * maths::powi(chosen.expected, power));
     sum
 }
 

@@ -10,6 +10,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::colour::luminance;
 use crate::job::Job;
+use crate::maths;
 use glam::DVec3;
 
 /// In the relative error of the whole image, each pixel's error is divided by the pixel's radiance, or by this share of
@@ -89,7 +90,7 @@ impl Accumulator<'_> {
             let mut sum = Statistics::default();
             let tile_mean = mean(self.tile(tile)).map_or(0.0, |(mean, _)| average(mean));
             for pixel in self.tile(tile) {
-                let variance = average(pixel.variance()) * weight(pixel, tile_mean).powi(2);
+                let variance = average(pixel.variance()) * maths::powi(weight(pixel, tile_mean), 2);
                 sum.paths += u64::from(pixel.count());
                 sum.pixels += 1;
                 sum.max_paths = sum.max_paths.max(pixel.count());
@@ -113,7 +114,7 @@ impl Accumulator<'_> {
                 // is correlated.
                 let error = f64::from(luminance(variance.rgb(x, y).map(f32::sqrt)));
                 let value = f64::from(luminance(self.pixel(x, y).mean().as_vec3())).max(floor);
-                if error == 0.0 { 0.0 } else { (NORMAL_95 * error / value).powi(2) }
+                if error == 0.0 { 0.0 } else { maths::powi(NORMAL_95 * error / value, 2) }
             };
             pixels.map(square).sum::<f64>() / self.grid.area(tile) as f64
         })

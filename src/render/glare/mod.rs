@@ -29,6 +29,7 @@ use crate::error::{Error, Result, check_range};
 use crate::exec;
 use crate::image::colour;
 use crate::job::Job;
+use crate::maths;
 use crate::photometry::glare::position_index;
 use crate::photometry::opening::Opening;
 use crate::rng;
@@ -138,7 +139,7 @@ pub fn rate(world: &World, eyes: &[Eye], params: &Params, job: Job) -> Result<Ve
 
 fn check(eye: &Eye, lamps: &[Lamp]) -> Result<()> {
     let direction = eye.direction.as_dvec3().normalize_or_zero();
-    if !eye.position.is_finite() || direction.x.hypot(direction.z) < MIN_HORIZONTAL {
+    if !eye.position.is_finite() || maths::hypot(direction.x, direction.z) < MIN_HORIZONTAL {
         return Err(Error::argument(format!(
             "position is {} and direction {}; both must be finite, and the direction neither 0 nor vertical",
             eye.position, eye.direction
@@ -189,7 +190,7 @@ impl Lamp {
         let u = self.local(-towards);
         let area = self.opening.projected_area(u);
         let largest = DVec3::AXES.map(|axis| self.opening.projected_area(axis)).into_iter().fold(0.0, f64::max);
-        let (c, gamma) = (u.y.atan2(u.x).to_degrees(), u.x.hypot(u.y).atan2(u.z).to_degrees());
+        let (c, gamma) = (maths::atan2(u.y, u.x).to_degrees(), maths::atan2(maths::hypot(u.x, u.y), u.z).to_degrees());
         let candela = world.scene().distributions[self.distribution].intensity(c, gamma) * self.factor;
         (area > largest * EDGE_ON).then_some(ApparentLamp { towards, distance, area, candela })
     }
@@ -270,7 +271,7 @@ fn rate_one(world: &World, eye: &Eye, rated: &Rated, params: &Params, index: u64
             sources.push(GlareSource {
                 origin: Origin::Light(lamp.light),
                 luminance: seen.candela / seen.area * squared_share.sqrt(),
-                solid_angle: seen.area / seen.distance.powi(2) * visible,
+                solid_angle: seen.area / maths::powi(seen.distance, 2) * visible,
                 position_index: index_of(seen.towards),
             });
         }
@@ -286,8 +287,9 @@ fn rate_one(world: &World, eye: &Eye, rated: &Rated, params: &Params, index: u64
         });
     }
     let (background, background_error, unrated_lux) = background(world, eye, rated, params, index, job);
-    let sum: f64 = sources.iter().map(|s| s.luminance.powi(2) * s.solid_angle / s.position_index.powi(2)).sum();
-    let ugr = if sources.is_empty() { f64::NEG_INFINITY } else { 8.0 * (0.25 / background * sum).log10() };
+    let sum: f64 =
+        sources.iter().map(|s| maths::powi(s.luminance, 2) * s.solid_angle / maths::powi(s.position_index, 2)).sum();
+    let ugr = if sources.is_empty() { f64::NEG_INFINITY } else { 8.0 * maths::log10(0.25 / background * sum) };
     Ok(Rating { ugr, background, background_error, unrated_lux, sources })
 }
 
@@ -314,7 +316,7 @@ fn background(world: &World, eye: &Eye, rated: &Rated, params: &Params, index: u
     }
     let n = f64::from(BATCHES);
     let mean = means.iter().sum::<f64>() / n;
-    let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (n * (n - 1.0));
+    let variance = means.iter().map(|m| maths::powi(m - mean, 2)).sum::<f64>() / (n * (n - 1.0));
     (mean, variance.sqrt(), luminance(unrated) / f64::from(per_batch * BATCHES))
 }
 

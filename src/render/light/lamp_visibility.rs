@@ -27,6 +27,7 @@ use super::survey::SampleCounts;
 use super::tree::{Child, LightTree};
 use crate::error::Result;
 use crate::image::try_vec;
+use crate::maths;
 use crate::render::bounds::Receiver;
 
 /// A light is unlikely if none of its samples has arrived and the estimated probability that the next one arrives is
@@ -136,7 +137,7 @@ impl Split {
 /// is proportional to √p. As none of `samples` samples has arrived, p is at most about 1 / `samples`.
 pub fn unlikely_share(samples: u64) -> f64 {
     let [min, max] = UNLIKELY_SHARES;
-    let root = f64::from(samples.max(1).ilog2() / 2).exp2();
+    let root = maths::exp2(f64::from(samples.max(1).ilog2() / 2));
     (UNLIKELY_ROOT / root).clamp(min, max)
 }
 
@@ -154,7 +155,7 @@ pub fn weights(lights: &Inventory, tree: &LightTree, sample_counts: &[SampleCoun
     for ((weight, prior), own) in weights.iter_mut().zip(priors).zip(sample_counts) {
         let arrival = (own.arrived as f64 + prior) / (own.drawn as f64 + 1.0);
         if own.arrived > 0 || arrival >= MIN_ARRIVAL {
-            *weight = arrival.sqrt().log2().round().exp2().clamp(MIN_WEIGHT, 1.0) as f32;
+            *weight = maths::exp2(maths::log2(arrival.sqrt()).round()).clamp(MIN_WEIGHT, 1.0) as f32;
         }
     }
     Ok(weights)

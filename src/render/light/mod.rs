@@ -26,6 +26,7 @@ use super::contribution::{LightSource, mean_channel};
 use super::emissive::Emitters;
 use super::environment::{self, EnvironmentSampler};
 use crate::error::Result;
+use crate::maths;
 use crate::scene::{PunctualLight, Scene};
 use glam::{DVec3, Vec2, Vec3};
 use lamp_visibility::Split;
@@ -110,7 +111,7 @@ impl Lights {
         };
         // The power of the environment is its flux into a sphere of radius r around the scene: π L × 4 π r², with the
         // mean luminance L.
-        let r2 = f64::from(radius).powi(2).max(f64::MIN_POSITIVE);
+        let r2 = maths::powi(f64::from(radius), 2).max(f64::MIN_POSITIVE);
         let power = mean * PI * 4.0 * PI * r2;
         let piece_flux = emitters.power;
         let inventory = Inventory { bounds, pieces: count, piece_flux, near, flux, is_far, environment: power };

@@ -1,6 +1,7 @@
 //! Punctual lights prepared for light sampling: points, spots, directional lights (`KHR_lights_punctual`) and measured
 //! luminaires.
 
+use crate::maths;
 use crate::photometry::Luminaire;
 use crate::render::bounds::{Bounds, CONE_MARGIN};
 use crate::render::contribution::mean_channel;
@@ -48,7 +49,7 @@ impl Punctual {
                 Self::Near { position, intensity, shape: IntensityDistribution::Isotropic }
             }
             PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle } => {
-                let (inner, outer) = (inner_angle.cos(), outer_angle.cos());
+                let (inner, outer) = (maths::cos(inner_angle), maths::cos(outer_angle));
                 let axis = direction.normalize_or_zero();
                 Self::Near {
                     position,
@@ -102,10 +103,10 @@ impl Punctual {
         let (solid_angle_or_area, strength) = match *light {
             PunctualLight::Point { intensity, .. } => (4.0 * std::f64::consts::PI, intensity),
             PunctualLight::Spot { intensity, outer_angle, .. } => {
-                (std::f64::consts::TAU * (1.0 - f64::from(outer_angle).cos()), intensity)
+                (std::f64::consts::TAU * (1.0 - maths::cos(f64::from(outer_angle))), intensity)
             }
             PunctualLight::Directional { illuminance, .. } => {
-                (std::f64::consts::PI * f64::from(radius).powi(2).max(f64::MIN_POSITIVE), illuminance)
+                (std::f64::consts::PI * maths::powi(f64::from(radius), 2).max(f64::MIN_POSITIVE), illuminance)
             }
             PunctualLight::Luminaire { colour, distribution, .. } => (distributions[distribution].flux(), colour),
         };

@@ -9,6 +9,7 @@
 
 use crate::error::Result;
 use crate::image::{try_collect, try_vec};
+use crate::maths;
 use crate::render::bounds::{Bounds, BoundsLanes, LANES, Receiver};
 use glam::{Vec3, Vec3A};
 
@@ -102,7 +103,7 @@ impl LightTree {
         // Scale intensities by their sum, so that importances cannot overflow. For the same reason, distances count as
         // at least 1e-9 times the radius of the bounds of all lights, and as at least 1e-15.
         let whole = Bounds::union(lights);
-        tree.nearest = (whole.radius() * 1e-9).powi(2).max(1e-30);
+        tree.nearest = maths::powi(whole.radius() * 1e-9, 2).max(1e-30);
         tree.add(&items, &clusters, root, NONE, 1.0 / whole.intensity.max(f32::MIN_POSITIVE));
         Ok(tree)
     }

@@ -5,9 +5,10 @@ use super::material::transform_matrix;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::srgb_to_linear;
 use crate::image::io::{self, Encoding};
+use crate::maths;
 use crate::photometry::ies;
 use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, TextureRef, Wrap, c90};
-use glam::{DVec3, Mat3, Quat, Vec2, Vec3};
+use glam::{DMat3, DQuat, DVec3, Mat3, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
 /// Enumeration values of accessors and buffer views (glTF 2.0, sections 5.1.3 and 5.11.5).
@@ -149,12 +150,12 @@ impl Writer {
         let perspective = json!({ "yfov": camera.fov_y, "znear": NEAR });
         self.cameras.push(json!({ "name": camera.name, "type": "perspective", "perspective": perspective }));
         let right = camera.forward.cross(camera.up);
-        let rotation = Quat::from_mat3(&Mat3::from_cols(right, camera.up, -camera.forward)).normalize();
+        let rotation = rotation([right, camera.up, -camera.forward]);
         self.nodes.push(json!({
             "name": camera.name,
             "camera": self.cameras.len() - 1,
             "translation": camera.position.to_array(),
-            "rotation": rotation.to_array(),
+            "rotation": rotation,
         }));
     }
 
@@ -179,7 +180,7 @@ impl Writer {
         self.nodes.push(json!({
             "name": format!("Light {index}"),
             "translation": position.to_array(),
-            "rotation": Quat::from_rotation_arc(Vec3::NEG_Z, direction.normalize()).to_array(),
+            "rotation": single(DQuat::from_rotation_arc(DVec3::NEG_Z, direction.as_dvec3().normalize())),
             "extensions": { "KHR_lights_punctual": { "light": self.lights.len() - 1 } },
         }));
         Ok(())
@@ -208,7 +209,7 @@ impl Writer {
             }
         };
         let (colour, multiplier) = split_peak(colour);
-        let rotation = Quat::from_mat3(&Mat3::from_cols(c0, c90(axis, c0), -axis)).normalize();
+        let rotation = rotation([c0, c90(axis, c0), -axis]);
         let mut reference = json!({ "light": profile, "multiplier": multiplier, "color": colour.to_array() });
         if is_point {
             reference["extras"] = json!({ IS_POINT: true });
@@ -216,7 +217,7 @@ impl Writer {
         self.nodes.push(json!({
             "name": format!("Light {index}"),
             "translation": position.to_array(),
-            "rotation": rotation.to_array(),
+            "rotation": rotation,
             "extensions": { IES: reference },
         }));
         Ok(())
@@ -412,11 +413,22 @@ fn split_peak(colour: Vec3) -> (Vec3, f32) {
     if peak > 0.0 { (colour / peak, peak) } else { (Vec3::ZERO, 0.0) }
 }
 
+/// The quaternion of the rotation with the given images of the axes.
+fn rotation(axes: [Vec3; 3]) -> [f32; 4] {
+    let [x, y, z] = axes.map(Vec3::as_dvec3);
+    single(DQuat::from_mat3(&DMat3::from_cols(x, y, z)).normalize())
+}
+
+/// Rounds a quaternion. It is computed in `f64`, because glam sums the squares of a `Quat` in another order on ARM.
+fn single(rotation: DQuat) -> [f32; 4] {
+    rotation.to_array().map(|v| v as f32)
+}
+
 /// Decomposes a texture transform into offset, rotation in radians and scale. An error if it has shear.
 fn decompose(transform: Mat3) -> Result<(Vec2, f32, Vec2)> {
     let (first, second) = (transform.x_axis.truncate(), transform.y_axis.truncate());
-    let rotation = (-first.y).atan2(first.x);
-    let (s, c) = rotation.sin_cos();
+    let rotation = maths::atan2(-first.y, first.x);
+    let (s, c) = maths::sin_cos(rotation);
     let scale = Vec2::new(first.length(), second.dot(Vec2::new(s, c)));
     let offset = transform.z_axis.truncate();
     let largest = scale.abs().max_element().max(offset.abs().max_element());

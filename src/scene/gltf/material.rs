@@ -6,6 +6,7 @@ use super::glossiness::{self, Colours};
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::image::io::{self, Encoding, MAX_PIXELS};
+use crate::maths;
 use crate::scene::{AlphaMode, Material, Texture, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3};
 use gltf::json::extensions::material::PbrSpecularGlossiness;
@@ -285,6 +286,6 @@ fn matrix(transform: &extensions::texture::TextureTransform) -> Mat3 {
 /// axis runs down. This follows the prose of `KHR_texture_transform` and existing renderers; the GLSL code in the text
 /// of the extension rotates the other way.
 pub fn transform_matrix(offset: Vec2, rotation: f32, scale: Vec2) -> Mat3 {
-    let (s, c) = rotation.sin_cos();
+    let (s, c) = maths::sin_cos(rotation);
     Mat3::from_cols(Vec3::new(c, -s, 0.0) * scale.x, Vec3::new(s, c, 0.0) * scale.y, offset.extend(1.0))
 }

@@ -3,6 +3,7 @@
 
 use super::patch::Patch;
 use crate::error::{Error, Result};
+use crate::maths;
 use crate::rng::Rng;
 use crate::scene::Scene;
 use glam::{DVec3, Vec3};
@@ -86,7 +87,7 @@ fn mean_clear_distance(scene: &Scene, chunks: &[Chunk], patch: &Patch, normal: D
         let (root, share) = (rng.next_f64().sqrt(), rng.next_f64());
         let point = a * (1.0 - root) + (b * (1.0 - share) + c * share) * root;
         let (radius2, angle) = (rng.next_f64(), std::f64::consts::TAU * rng.next_f64());
-        let (s, t) = angle.sin_cos();
+        let (s, t) = maths::sin_cos(angle);
         let direction = (u * t + v * s) * radius2.sqrt() + normal * (1.0 - radius2).sqrt();
         // Start beyond the plane's own triangles, which differ in height by up to four tolerances.
         let start = point + normal * (4.0 * patch.tolerance);

@@ -26,7 +26,8 @@ pub use place::{Placed, cover, place};
 use super::Scene;
 use crate::error::{Error, Result};
 use crate::image::try_collect;
-use glam::{DVec2, DVec3, Vec2, Vec3};
+use crate::maths;
+use glam::{DVec3, Vec2, Vec3};
 
 /// A planar patch of the scene, with the frame of its bounding rectangle.
 ///
@@ -57,7 +58,7 @@ impl Surface {
     /// Returns the patch with its axes rotated by `angle` in radians from u towards v, and with the bounding rectangle
     /// along these axes.
     pub fn turned(&self, scene: &Scene, angle: f64) -> Result<Self> {
-        let turn = DVec2::from_angle(angle);
+        let turn = maths::direction_at(angle);
         let u = self.u_axis.as_dvec3() * turn.x + self.v_axis.as_dvec3() * turn.y;
         let rectangle = bounding_rectangle::bound(
             &corners(scene, &self.triangles)?,

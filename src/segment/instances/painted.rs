@@ -5,6 +5,7 @@ use super::regions::Regions;
 use super::tree::Tree;
 use crate::error::Result;
 use crate::image::try_vec;
+use crate::maths;
 
 /// Maximum share of the image that a lamp may cover; a larger region is a wall or a ceiling. [judged on 28 photos]
 const MAX_AREA: f64 = 0.3;
@@ -84,7 +85,8 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
         }
         let purity = covered[n] / (covered[n] + paint.negatives[n]);
         let excess = regions.axes(n)[0] / (USUAL_EXTENT * length);
-        regions.contour_gradient(n) * cover.powf(COVER_POWER) * purity.powi(PURITY_POWER) / (1.0 + excess * excess)
+        regions.contour_gradient(n) * maths::powf(cover, COVER_POWER) * maths::powi(purity, PURITY_POWER)
+            / (1.0 + excess * excess)
     };
 
     // From the leaves to the root, test whether a node gains at least as much as the best disjoint nodes inside it.
@@ -124,5 +126,5 @@ fn extent(stroke: &[u32], width: usize) -> f64 {
         let values = || stroke.iter().map(|&p| f(p as usize, width));
         (values().max().unwrap_or(0) - values().min().unwrap_or(0) + 1) as f64
     };
-    side(|p, width| p % width).hypot(side(|p, width| p / width))
+    maths::hypot(side(|p, width| p % width), side(|p, width| p / width))
 }

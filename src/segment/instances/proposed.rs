@@ -12,6 +12,7 @@ use super::surroundings;
 use super::tree::Disjoint;
 use crate::error::{Error, Result};
 use crate::image::{Image, try_collect, try_push, try_vec};
+use crate::maths;
 
 /// Share of the plane's pixels that count as the brightest ones. [bench photos:nostrokes]
 const BRIGHTEST: f64 = 0.002;
@@ -70,7 +71,7 @@ pub fn find(search: &Search) -> Result<Vec<u32>> {
         Some(surface) => surface.area[node] / surface.shown.max(f64::MIN_POSITIVE),
         None => regions.area[node] / plane_area,
     };
-    let score = |node: usize| regions.contour_gradient(node) * regions.area[node].powf(AREA_POWER);
+    let score = |node: usize| regions.contour_gradient(node) * maths::powf(regions.area[node], AREA_POWER);
     let is_compact = |node: &usize| {
         regions.area[*node] >= MIN_AREA
             && share(*node) <= MAX_SHARE
@@ -154,7 +155,7 @@ impl Shape {
             true => other.area <= self.area * KIND_AREA,
             false => is_of_kind([self.area, self.aspect], [other.area, other.aspect]),
         };
-        has_size && a.hypot(b) <= CHROMA
+        has_size && maths::hypot(a, b) <= CHROMA
     }
 }
 

@@ -7,6 +7,7 @@ use crate::error::Result;
 use crate::exec;
 use crate::image::{Image, pyramid, try_vec};
 use crate::job::Job;
+use crate::maths;
 
 /// Standard deviation of the blur of L* before the tree is built, in pixels. It keeps noise of single pixels from
 /// forming regions. [convention]
@@ -41,17 +42,17 @@ const SLOPE: f32 = 24389.0 / 27.0;
 
 /// Returns the luminance, relative to white, of an L*.
 fn luminance(l: f32) -> f32 {
-    if l > LINEAR_L { ((l + 16.0) / 116.0).powi(3) } else { l.max(0.0) / SLOPE }
+    if l > LINEAR_L { maths::powi((l + 16.0) / 116.0, 3) } else { l.max(0.0) / SLOPE }
 }
 
 /// Returns the L* of a luminance, which is relative to white.
 fn lightness(y: f32) -> f32 {
-    if y > LINEAR_L / SLOPE { 116.0 * y.cbrt() - 16.0 } else { y * SLOPE }
+    if y > LINEAR_L / SLOPE { 116.0 * maths::cbrt(y) - 16.0 } else { y * SLOPE }
 }
 
 /// Returns the brightness level of an L*, not rounded.
 pub fn level(l: f32) -> f32 {
-    let above = if l > 100.0 { LEVELS_PER_DOUBLING * (l / 100.0).log2() } else { 0.0 };
+    let above = if l > 100.0 { LEVELS_PER_DOUBLING * maths::log2(l / 100.0) } else { 0.0 };
     (l.clamp(0.0, 100.0) * LEVELS_PER_L + above).min(MAX_LEVEL)
 }
 
@@ -82,7 +83,7 @@ impl Brightness {
             let here = smoother.row(y);
             for (x, out) in row.iter_mut().enumerate() {
                 let dx = here[(x + 1).min(width - 1)] - here[x.saturating_sub(1)];
-                *out = 0.5 * dx.hypot(below[x] - above[x]);
+                *out = 0.5 * maths::hypot(dx, below[x] - above[x]);
             }
         })?;
         Ok(Self { width, height, lab, smooth, levels, gradient })
@@ -194,7 +195,7 @@ impl OnFace {
 /// Lengths of the axes of the ellipse with the central second moments xx, yy and xy, the long axis first. `pixel` is
 /// the variance within a pixel. It is added to xx and yy, and is the least variance along an axis.
 fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
-    let (mean, spread) = (0.5 * (xx + yy) + pixel, (0.25 * (xx - yy).powi(2) + xy * xy).sqrt());
+    let (mean, spread) = (0.5 * (xx + yy) + pixel, (0.25 * maths::powi(xx - yy, 2) + xy * xy).sqrt());
     [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
 }
 

@@ -9,6 +9,7 @@ use super::tree::{Disjoint, Tree};
 use crate::error::Result;
 use crate::image::{Image, try_collect, try_push, try_vec};
 use crate::job::Job;
+use crate::maths;
 use std::ops::RangeInclusive;
 
 /// Maximum amount by which a lamp may be darker than the darkest lamp under a stroke, in L*. [judged on 28 photos]
@@ -125,7 +126,7 @@ const BLUR: f64 = 2.0;
 /// Share of a lamp's contrast that is left after a Gaussian blur of variance [`BLUR`]: the value at the centre of a
 /// blurred disc that has the lamp's area and, before the blur, the value 1.
 fn sharpness(area: f64) -> f64 {
-    1.0 - (-area / (std::f64::consts::TAU * BLUR)).exp()
+    1.0 - maths::exp(-area / (std::f64::consts::TAU * BLUR))
 }
 
 /// Whether two lamps, each given by its area and its aspect on the face of the room, may be of one kind.
@@ -178,7 +179,7 @@ impl LampLimits {
     /// Whether the ring of pixels around a region has about the colour of the ring around one of the lamps under the
     /// strokes.
     fn is_beside(&self, ring: &Surroundings) -> bool {
-        let difference = |own: &[f64; 3]| (0..3).map(|c| (own[c] - ring.colour[c]).powi(2)).sum::<f64>().sqrt();
+        let difference = |own: &[f64; 3]| (0..3).map(|c| maths::powi(own[c] - ring.colour[c], 2)).sum::<f64>().sqrt();
         self.rings.iter().any(|own| difference(own) <= EQUAL_RING)
     }
 }
@@ -388,7 +389,7 @@ impl Search<'_> {
             }
             let likeness = self.likeness(model, node, limits);
             if likeness >= NEARLY {
-                let rank = regions.contour_gradient(node) * regions.area[node].powf(AREA_POWER);
+                let rank = regions.contour_gradient(node) * maths::powf(regions.area[node], AREA_POWER);
                 try_push(&mut candidates, (node as u32, likeness, rank))?;
             }
         }
@@ -539,7 +540,7 @@ impl Search<'_> {
             return 0.0;
         }
         let [l, a, b] = regions.colour(node);
-        let chroma = model.colours.iter().map(|c| (c[1] - a).hypot(c[2] - b)).fold(f64::INFINITY, f64::min);
+        let chroma = model.colours.iter().map(|c| maths::hypot(c[1] - a, c[2] - b)).fold(f64::INFINITY, f64::min);
         // Lower the limit for small lamps: blur takes the share 1 - `sharpness` of their contrast. `model.ring / RING`
         // is the median contrast, in L*, that the lamps under the strokes would have without blur.
         let min_lightness = model.min_lightness - limits.dimmer - (1.0 - sharpness) * model.ring / RING;
