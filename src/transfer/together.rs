@@ -452,8 +452,9 @@ impl Run<'_> {
                 }
             });
             // Keep the unfinished picture too if the rendering is cancelled or fails.
+            let film = self.planes[first].results.film.clone();
             for &k in others {
-                self.planes[k].results.film = self.planes[first].results.film.clone();
+                self.planes[k].results.film.clone_from(&film);
             }
             outcome.map_err(|e| self.at(first, Stage::Render, e))?;
         }

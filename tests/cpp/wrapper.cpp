@@ -214,7 +214,8 @@ void errors_have_status_and_words() {
                                                     ok(luxfer::Transfer::create(context))};
     CHECK_ERROR(luxfer::Transfer::start_all(context, {}), LUXFER_INVALID_ARGUMENT);
     OK(planes[0].set_photo(new_image(context)));
-    const luxfer::Error unfit = error_of([&] { return luxfer::Transfer::start_all(context, planes); });
+    const luxfer::Error unfit = error_of(
+        [&] { return luxfer::Transfer::start_all(context, planes, LUXFER_STAGE_FEATURES, LUXFER_STAGE_FEATURES); });
     CHECK(std::strstr(unfit.what(), "transfers[1]") != nullptr);
     OK(planes[1].set_photo(new_image(context)));
     const std::array<luxfer::TransferParams, 2> settings;

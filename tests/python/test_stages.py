@@ -97,7 +97,7 @@ class Transfer(Case):
             np.testing.assert_array_equal(scale, plane.solution.scale)
         self.assertTrue((np.array(both[0].solution.background) > 0).all())
 
-        with self.assertRaisesRegex(luxfer.InvalidArgument, r"transfers\[1\].*transfers\[0\]"):
+        with self.assertRaisesRegex(errors.InvalidArgument, r"transfers\[1\].*transfers\[0\]"):
             luxfer.Transfer.run_all([both[0], both[0]])
         with self.assertRaisesRegex(ValueError, "settings of 1 transfers for 2"):
             luxfer.Transfer.run_all(both, params=[settings])
