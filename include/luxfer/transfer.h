@@ -351,7 +351,7 @@ luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
  * As luxfer_transfer_start; also LUXFER_INVALID_ARGUMENT if photos or scenes differ, if two transfers are one, or if
  * white_luminance or the settings of RELIGHT differ; the job ends with it if two transfers light one triangle of the
  * scene. LUXFER_INVALID_OPERATION if RELIGHT runs without EMISSION on transfers whose textures were not placed by one
- * job. The message names the transfer by its index, such as transfers[1].
+ * job. The message names the transfer by its index.
  */
 luxfer_status luxfer_transfer_start_all(luxfer_context *context,
                                         luxfer_transfer *const *transfers,

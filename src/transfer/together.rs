@@ -24,7 +24,7 @@ use std::cmp::Ordering;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Maximum number of transfers that run together. [convention]
+/// Maximum number of transfers that run together.
 pub const MAX_PLANES: usize = relight::MAX_EMITTERS;
 
 /// Checks a run of several transfers, as [`Transfer::check`] does for one.
