@@ -209,7 +209,8 @@ fn luminance() -> f64 {
     f64::from(luxfer::image::colour::luminance(glam::Vec3::new(0.95, 0.85, 0.75)))
 }
 
-/// Compares every design with its textures by three methods, for all sizes of patches.
+/// Compares every design with its textures by three methods, for all sizes of patches. The plot shows the worst
+/// statistic of all designs against the size of the patches, as in the paper's Fig. 11.
 fn patterns() {
     let methods: [(&str, Params); 3] = [
         ("default", Params::default()),
@@ -218,14 +219,19 @@ fn patterns() {
     ];
     let mut table = Table::new(["design", "method"].into_iter().chain(STATISTICS).chain(["broken", "stated error %"]));
     let (mut ours, mut behind) = (Score::default(), 0);
+    let mut by_block = methods.each_ref().map(|_| BLOCKS.map(|block| [block as f64, 1e-4]));
     for design in &DESIGNS {
         let exemplar = design.exemplar(480);
         let filled = design.filled_in(&exemplar);
+        let mut curves = by_block.iter_mut();
         let scores = methods.each_ref().map(|(method, params)| {
             let (mut worst, mut stated) = (Score::default(), 0.0f64);
-            for block in BLOCKS {
+            let curve = curves.next().expect("one curve per method");
+            for (block, point) in BLOCKS.into_iter().zip(curve) {
                 let result = exemplar.run(&Params { width: 800, height: 720, block, ..params.clone() });
-                worst = worst.worse(Score::of(&result, design, filled, luminance()));
+                let score = Score::of(&result, design, filled, luminance());
+                point[1] = score.worst().max(point[1]);
+                worst = worst.worse(score);
                 stated = stated.max(result.error);
                 if block == 100 {
                     save(&result.texture, &format!("emission_{}_{}", design.name, method).replace([' ', '%'], "_"));
@@ -239,6 +245,9 @@ fn patterns() {
         behind += scores[1..].iter().map(|other| scores[0].behind(other)).sum::<usize>();
     }
     table.print("800 x 720 from 480 x 480 with two corners missing; the worst of patches of 25 to 200 pixels");
+    let mut plot = Plot::new("Size of the patches", "side of a patch in pixels", "worst statistic");
+    methods.iter().zip(by_block).for_each(|((name, _), points)| plot.add(name, points));
+    written(&plot, "emission_blocks");
     figure("emission.worst_stat", 100.0 * ours.worst(), "%");
     figure("emission.lattice_rms", 100.0 * ours.phase(), "% of the period");
     figure("emission.pairs", 100.0 * ours.pairs(), "%");
@@ -294,7 +303,11 @@ fn knobs() {
     let points: Vec<[f64; 2]> = [4, 16, 64, 192, 1024].map(|candidates| point(256, 1.0, candidates)).into();
     plot.add("4 to 1024 candidates, working side 256", points);
     table.print("1024 x 1024 from 480 x 480, free patches");
-    if let Err(reason) = plot.write("emission_knobs") {
+    written(&plot, "emission_knobs");
+}
+
+fn written(plot: &Plot, name: &str) {
+    if let Err(reason) = plot.write(name) {
         println!("# the plot was not written: {reason}");
     }
 }

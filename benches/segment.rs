@@ -45,6 +45,9 @@ fn main() {
         masks(&pool, &cases, f64::NAN);
         return pool.run(|| calibration(&rooms));
     }
+    if std::env::args().any(|arg| arg == "channels") {
+        return pool.run(|| channels(&rooms));
+    }
     let update = pool.run(|| timing(&cases[0]));
     masks(&pool, &cases, update);
     pool.run(|| refinement(&cases));
@@ -491,12 +494,15 @@ fn knobs(rooms: &[&Case]) {
     written(&plot, "segment_knobs");
 }
 
-/// Measures the error for subsets of the channels, as in the paper's Fig. 6.
+/// Measures the error for subsets of the channels, as in the paper's Fig. 6. The plot shows the subsets of the paper,
+/// in which one kind of channels after the other is added.
 fn channels(rooms: &[&Case]) {
     const COLOUR: u32 = 0b111;
     const DEPTH: u32 = 1 << 3;
     const POSITION: u32 = 0b111 << 4;
     const NORMAL: u32 = 0b111 << 7;
+    let added = [COLOUR, COLOUR | DEPTH, COLOUR | DEPTH | POSITION, COLOUR | DEPTH | POSITION | NORMAL];
+    let mut points = [[[f64::NAN; 2]; 4]; 2];
     let mut table = Table::new(["channels", "IoU, every surface", "one wall only"]);
     for (name, channels) in [
         ("colour", COLOUR),
@@ -508,16 +514,15 @@ fn channels(rooms: &[&Case]) {
         ("all", COLOUR | DEPTH | POSITION | NORMAL),
     ] {
         let params = Params { channels, ..Params::default() };
-        let mean = |half: usize| {
-            let all: Vec<f64> = rooms
-                .iter()
-                .skip(half)
-                .step_by(2)
-                .map(|case| iou(&segmented(case, &params).mask, &case.truth))
-                .collect();
-            format!("{:.4}", all.iter().sum::<f64>() / all.len() as f64)
-        };
-        table.row([name.to_string(), mean(0), mean(1)]);
+        let errors = [0, 1].map(|half| seconds_and_error(rooms, half, &params)[1]);
+        if let Some(step) = added.iter().position(|subset| *subset == channels) {
+            let count = f64::from(channels.count_ones());
+            errors.iter().enumerate().for_each(|(half, error)| points[half][step] = [count, *error]);
+        }
+        table.row([name.to_string()].into_iter().chain(errors.map(|error| format!("{:.4}", 1.0 - error))));
     }
     table.print("Channels left out (the paper's Fig. 6)");
+    let mut plot = Plot::new("Colour, then depth, position and normal", "channels", "1 - IoU");
+    STROKES.iter().zip(points).for_each(|(name, points)| plot.add(name, points));
+    written(&plot, "segment_channels");
 }

@@ -678,8 +678,9 @@ layouts! {
     luxfer_warning: struct_size code stage has_place severity limit place message advice;
     luxfer_plan_params: struct_size time_budget_ms target_error reserved;
     luxfer_plan_report: struct_size relights seconds error relight_seconds relight_error render_seconds render_error;
-    luxfer_merge_params: struct_size source reference keep_moving max_shift saturation exposures;
-    luxfer_merge_report: struct_size count reference reserved clipped moved exposures errors stated shift_x shift_y;
+    luxfer_merge_params: struct_size source reference keep_moving max_shift saturation exposures tone_curve reserved;
+    luxfer_merge_report: struct_size count reference reserved clipped moved exposures errors stated shift_x shift_y
+        tone_curve contradicts_srgb tone_curve_error tone_curve_light;
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;
     luxfer_sheet_report: struct_size marks residual error to_photo;
     luxfer_guides_params: struct_size width height samples camera smooth seed;

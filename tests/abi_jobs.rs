@@ -212,3 +212,72 @@ fn a_thousand_contexts_and_jobs_leave_no_thread_behind() {
     }
     assert!(threads() < before + 50, "{before} threads before, {} after", threads());
 }
+
+/// A job of several transfers names the one that is wrong, leaves all of them idle if it does not start, and keeps all
+/// of them busy if it does.
+#[test]
+fn several_transfers_are_checked_before_their_job_starts() {
+    let _alone = ALONE.lock();
+    let (context, other_context) = (context(1), context(1));
+    let transfer = |context| made(|out| unsafe { luxfer_transfer_create(context, out) });
+    let [first, second, foreign] = [context, context, other_context].map(transfer);
+    let mut job = null_mut();
+    let photo = image(context, 12, 8, 0.5);
+    let mut start = |transfers: &[*mut luxfer_transfer], first, last| unsafe {
+        luxfer_transfer_start_all(context, transfers.as_ptr(), transfers.len(), first, last, null(), &mut job)
+    };
+    let refused = |status, expected, part: &str| {
+        assert_eq!(status, expected, "{part}");
+        assert!(message(context).contains(part), "{}, not {part}", message(context));
+    };
+    unsafe { assert_eq!(luxfer_transfer_set_photo(first, photo), LUXFER_OK) };
+    refused(start(&[], 0, 0), LUXFER_INVALID_ARGUMENT, "count is 0");
+    refused(start(&[first; 17], 0, 0), LUXFER_INVALID_ARGUMENT, "count is 17");
+    refused(start(&[first, null_mut()], 0, 0), LUXFER_INVALID_ARGUMENT, "transfers[1]");
+    refused(start(&[first, foreign], 0, 0), LUXFER_INVALID_ARGUMENT, "transfers[1] belongs to another context");
+    refused(start(&[first, first], 0, 0), LUXFER_INVALID_ARGUMENT, "transfers[1] is transfers[0] too");
+    refused(start(&[first], 0, 8), LUXFER_INVALID_ARGUMENT, "last is 8");
+    refused(start(&[first, second], 1, 1), LUXFER_INVALID_OPERATION, "transfers[1]: stage Features: set the photo");
+    unsafe {
+        let size = size_of::<luxfer_transfer_params>();
+        let mut params = std::mem::zeroed::<luxfer_transfer_params>();
+        assert_eq!(luxfer_init(LUXFER_STRUCT_TRANSFER_PARAMS, (&raw mut params).cast(), size), LUXFER_OK);
+        params.target = 9;
+        assert_eq!(luxfer_transfer_set_photo(second, photo), LUXFER_OK);
+        let (both, settings) = ([first, second], [null(), &raw const params]);
+        let status = luxfer_transfer_start_all(context, both.as_ptr(), 2, 1, 1, settings.as_ptr(), &mut job);
+        refused(status, LUXFER_INVALID_ARGUMENT, "transfers[1]: target is 9");
+        let all = [first, second];
+        assert_eq!(
+            luxfer_transfer_start_all(null_mut(), all.as_ptr(), 2, 1, 1, null(), &mut job),
+            LUXFER_INVALID_ARGUMENT
+        );
+        refused(
+            luxfer_transfer_start_all(context, null(), 2, 1, 1, null(), &mut job),
+            LUXFER_INVALID_ARGUMENT,
+            "transfers is NULL",
+        );
+        refused(
+            luxfer_transfer_start_all(context, all.as_ptr(), 2, 1, 1, null(), null_mut()),
+            LUXFER_INVALID_ARGUMENT,
+            "job is NULL",
+        );
+        // None of the calls has left a transfer busy: the job starts, and its results are those of both.
+        assert_eq!(luxfer_transfer_start_all(context, all.as_ptr(), 2, 1, 1, null(), &mut job), LUXFER_OK);
+        let mut outcome = -1;
+        assert_eq!(luxfer_job_wait(job, -1, None, null_mut(), &mut outcome), LUXFER_OK);
+        assert_eq!(outcome, LUXFER_OK, "{}", message(context));
+        assert_eq!(luxfer_release(job.cast()), LUXFER_OK);
+        for transfer in all {
+            let mut features = null_mut();
+            assert_eq!(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_FEATURES, &mut features), LUXFER_OK);
+            assert_eq!(luxfer_release(features.cast()), LUXFER_OK);
+        }
+        for object in [first, second, foreign] {
+            assert_eq!(luxfer_release(object.cast()), LUXFER_OK);
+        }
+        assert_eq!(luxfer_release(photo.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
+        assert_eq!(luxfer_release(other_context.cast()), LUXFER_OK);
+    }
+}

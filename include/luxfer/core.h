@@ -618,13 +618,18 @@ luxfer_status luxfer_image_get_metadata(luxfer_image *image,
  * metadata, so that luxfer_photo_metadata.white_luminance holds for the merged image too. Values above 1 are light
  * that the reference clips.
  *
- * The photos must be linear once they are loaded, as developed raw files and photos with the sRGB curve are. Where a
- * camera applied another tone curve, the ratio of two exposures depends on the brightness, and lamps become too bright
- * or too dark.
+ * Developed raw files and photos with the sRGB curve are linear once they are loaded. Where a camera applied another
+ * tone curve, the ratio of two exposures depends on the brightness, and lamps would become too bright or too dark. If
+ * the exposures are known, the library recovers this curve from the photos and undoes it; the report states the curve
+ * and its error. If the exposures are unknown, the photos must be linear: they determine a curve only up to an
+ * exponent.
  * ================================================================================================================== */
 
 /** Where the exposures of photos come from: a LUXFER_EXPOSURE_SOURCE_ value. */
 typedef int32_t luxfer_exposure_source;
+
+/** The tone curve with which photos were taken: a LUXFER_TONE_CURVE_ value. */
+typedef int32_t luxfer_tone_curve;
 
 /** Settings for merging exposures. Fill them with luxfer_merge_params_init. */
 typedef struct luxfer_merge_params {
@@ -658,6 +663,10 @@ typedef struct luxfer_merge_params {
      * Elements beyond the number of photos must be 0.
      */
     double exposures[16];
+    /** Tone curve of the photos: a LUXFER_TONE_CURVE_ value; default LUXFER_TONE_CURVE_RECOVERED. */
+    luxfer_tone_curve tone_curve;
+    /** Reserved; always 0. */
+    uint32_t reserved;
 } luxfer_merge_params;
 
 /** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
@@ -707,6 +716,27 @@ typedef struct luxfer_merge_report {
      * not show that part.
      */
     int32_t shift_y[16];
+    /**
+     * The tone curve that the photos were taken to have: LUXFER_TONE_CURVE_RECOVERED if another curve than that of
+     * sRGB was recovered and undone, else LUXFER_TONE_CURVE_SRGB.
+     */
+    luxfer_tone_curve tone_curve;
+    /**
+     * 1 if the photos contradict the tone curve of sRGB and no other curve was recovered, because the exposures are
+     * unknown, the levels of the photos determine no curve, or the settings say so: the light of the merged image is
+     * then wrong by more than noise, and you should state the exposures. 0 otherwise.
+     */
+    uint32_t contradicts_srgb;
+    /**
+     * Largest error of the recovered curve: of the light at a code, relative to white, as a share of this
+     * light, over the codes that the photos show. 0 without a recovered curve.
+     */
+    double tone_curve_error;
+    /**
+     * Light at the codes 0, 1/16, ... 1 of the photos' files, relative to white: of the recovered curve, or else of
+     * sRGB.
+     */
+    double tone_curve_light[17];
 } luxfer_merge_report;
 
 /**
@@ -721,6 +751,15 @@ typedef struct luxfer_merge_report {
 
 /** From pixels that two neighbouring exposures both show well. */
 #define LUXFER_EXPOSURE_SOURCE_PIXELS 2
+
+/**
+ * That of sRGB, unless the exposures are known and the photos agree significantly better with another curve, which is
+ * then undone. Exposures are known from the field exposures, or from the metadata.
+ */
+#define LUXFER_TONE_CURVE_RECOVERED 0
+
+/** That of sRGB: the photos are linear as they are. */
+#define LUXFER_TONE_CURVE_SRGB 1
 
 /**
  * Merges count photos of one view, in [1, 16], in any order, into one image. The photos have one size and one number

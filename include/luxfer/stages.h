@@ -1209,8 +1209,8 @@ typedef struct luxfer_relight_report {
 #define LUXFER_OUTCOME_SATISFIED 0
 
 /**
- * The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps, two goals
- * contradict each other.
+ * The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps and for
+ * luxfer_transfer_start_all, two targets contradict each other.
  */
 #define LUXFER_OUTCOME_TOO_BRIGHT 1
 
@@ -1220,7 +1220,8 @@ typedef struct luxfer_relight_report {
 #define LUXFER_OUTCOME_DARK 2
 
 /**
- * All lamps at their largest power are too weak, or two goals contradict each other. Occurs only for a luxfer_lamps.
+ * All lamps at their largest power are too weak, or two goals contradict each other. Occurs only for a luxfer_lamps,
+ * and for transfers whose light luxfer_transfer_start_all solves for together.
  */
 #define LUXFER_OUTCOME_TOO_DIM 3
 

@@ -327,6 +327,40 @@ luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
                                     const luxfer_transfer_params *params,
                                     luxfer_job **job);
 
+/**
+ * Starts a job that runs the stages first to last of several transfers, one for each plane with lights that the photo
+ * shows, such as a ceiling and a wall with sconces, or two levels of a ceiling. transfers holds count handles, in [1,
+ * 16], each at most once; params holds count pointers to settings, each of which may be NULL for the defaults, or is
+ * NULL for the defaults of all. The transfers must have the same photo and the same scene; each has strokes, a
+ * surface, and other inputs of its own. With one transfer, the job is that of luxfer_transfer_start. The results do
+ * not depend on the order of the transfers. The caller releases *job. Any thread.
+ *
+ * The stages VIEW and FEATURES run once for all transfers whose settings and inputs for them are equal, so that there
+ * is one camera and one layout of the room: the layout with which the strokes of all planes agree best. Masks,
+ * unwarped image, texture, warnings and reports are those of each transfer; seconds of luxfer_transfer_report is the
+ * time that a stage took for all of them. The stage EMISSION places all textures in one scene, and the stage RELIGHT
+ * solves for the light of all planes together, because the lamps of each plane also light the other planes. Each
+ * transfer then has the same LUXFER_SCENE_LIT, with the light of all planes. In luxfer_transfer_get_solution,
+ * background includes the light of the other planes; a plane that they alone make brighter than in the photo gets no
+ * light, and a warning. The stage RENDER runs once for all transfers with equal cameras and settings.
+ *
+ * Each plane must be parallel to two of the room's three axes: a ceiling, a floor or a wall (plane_axes of
+ * luxfer_rectify_params). Sloped planes are not unwarped. For a sloped plane, make the texture by luxfer_image_warp
+ * and a luxfer_emission, and set it by luxfer_transfer_set_texture; the transfer then needs only its masks.
+ *
+ * As luxfer_transfer_start; also LUXFER_INVALID_ARGUMENT if photos or scenes differ, if two transfers are one, or if
+ * white_luminance or the settings of RELIGHT differ; the job ends with it if two transfers light one triangle of the
+ * scene. LUXFER_INVALID_OPERATION if RELIGHT runs without EMISSION on transfers whose textures were not placed by one
+ * job. The message names the transfer by its index.
+ */
+luxfer_status luxfer_transfer_start_all(luxfer_context *context,
+                                        luxfer_transfer *const *transfers,
+                                        size_t count,
+                                        luxfer_stage first,
+                                        luxfer_stage last,
+                                        const luxfer_transfer_params *const *params,
+                                        luxfer_job **job);
+
 /* ==================================================================================================================
  * Transfer results
  *

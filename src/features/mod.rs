@@ -43,6 +43,7 @@ mod normals;
 mod plane_fit;
 mod score;
 mod search;
+mod several;
 mod strokes;
 #[cfg(test)]
 mod tests;
@@ -56,19 +57,22 @@ pub use input::{CHANNELS, DepthKind, DepthMap, DepthSource, Input, NORMAL, POSIT
 #[cfg(feature = "onnx")]
 pub use monocular::{DepthNetwork, Normalisation, run_with_network};
 
+pub use several::run_for_planes;
+
 use crate::error::{Error, Result};
 use crate::exec;
 use crate::image::Image;
 use crate::job::Job;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 #[derive(Clone, Debug)]
 pub struct Features {
     /// [`CHANNELS`] channels of the photo's size; finite everywhere.
-    pub image: Image,
+    pub image: Arc<Image>,
     /// Confidence in the depth of each pixel, in `[0, 1]`: 1 where the caller's depth map has a value, 0 in the holes
     /// of this map, 0.5 for depth from a network, below 1 for the built-in layout, 0.05 for the neutral prior.
-    pub depth_confidence: Image,
+    pub depth_confidence: Arc<Image>,
     pub depth_source: DepthSource,
     /// The box room from which the depth was computed, if any.
     pub layout: Option<Layout>,
@@ -134,6 +138,6 @@ pub fn run(input: &Input, params: &Params, job: Job) -> Result<Features> {
     if !is_finite.into_inner() {
         return Err(Error::argument("the photo holds values beyond 1e30; scale it so that 1 is display white"));
     }
-    let confidence = surface.confidence;
-    Ok(Features { image, depth_confidence: confidence, depth_source, layout, surfaces, non_finite })
+    let (image, depth_confidence) = (Arc::new(image), Arc::new(surface.confidence));
+    Ok(Features { image, depth_confidence, depth_source, layout, surfaces, non_finite })
 }

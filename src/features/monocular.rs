@@ -21,6 +21,7 @@ use crate::exec;
 use crate::image::{Image, colour::linear_to_srgb};
 use crate::job::Job;
 use crate::network::{Network, Tensor, resize_cubic};
+use std::sync::Arc;
 
 /// The input normalisation with which the network was trained. The file does not record it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -158,7 +159,7 @@ pub fn run_with_network(input: &Input, network: &DepthNetwork, params: &Params, 
     let map = DepthMap { image: &depth, kind: DepthKind::AlongZ };
     let mut features = super::run(&Input { depth: Some(map), ..*input }, params, job.part(0.9, 1.0))?;
     features.depth_source = DepthSource::Network;
-    features.depth_confidence.data.iter_mut().for_each(|c| *c *= CONFIDENCE);
+    Arc::make_mut(&mut features.depth_confidence).data.iter_mut().for_each(|c| *c *= CONFIDENCE);
     Ok((features, depth))
 }
 

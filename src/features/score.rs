@@ -2,6 +2,7 @@
 //! ceiling); seams between faces should coincide with segments along them; the strokes of a plane should lie on a
 //! single face.
 
+use super::box_room::Face;
 use super::grow::Surfaces;
 use super::input::RoomView;
 use super::strokes;
@@ -150,6 +151,19 @@ impl Evidence {
     pub fn score(&self, sides: &[f64; 4]) -> f64 {
         let agreement = |(i, quadrant): (usize, &Quadrant)| quadrant.lines(1.0 / sides[i % 2], 1.0 / sides[2 + i / 2]);
         self.quadrants.iter().enumerate().map(agreement).sum()
+    }
+
+    /// Returns the score of the strokes on the face on which it is highest, as if this face were their plane.
+    pub fn strokes_on_best_face(&self, sides: &[f64; 4]) -> f64 {
+        let mut counts = [0.0; Face::COUNT];
+        for (i, quadrant) in self.quadrants.iter().enumerate() {
+            let (wall, level) = (i % 2, 2 + i / 2);
+            let [on_wall, on_level, on_back] = quadrant.strokes(1.0 / sides[wall], 1.0 / sides[level]);
+            counts[wall] += on_wall;
+            counts[level] += on_level;
+            counts[Face::Back as usize] += on_back;
+        }
+        counts.into_iter().fold(f64::NEG_INFINITY, f64::max)
     }
 
     /// Returns up to `count` candidate distances of one side (left, right, ceiling or floor). If the side is at a

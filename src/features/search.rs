@@ -9,7 +9,7 @@
 
 use super::box_room::{Face, Layout, faces, facing_axes};
 use super::grow::Surfaces;
-use super::input::RoomView;
+use super::input::{PlaneStroke, RoomView};
 use super::score::Evidence;
 use crate::error::{Error, Result};
 use crate::exec;
@@ -117,6 +117,45 @@ pub fn find(room: &RoomView, surfaces: Option<&Surfaces>, size: [usize; 2], job:
     })
 }
 
+/// The strokes on one of several planes of a photo, and the surfaces over which they have grown.
+pub struct PlaneEvidence<'a> {
+    pub strokes: &'a [PlaneStroke<'a>],
+    pub surfaces: Option<&'a Surfaces>,
+}
+
+/// Finds one box for several planes. The strokes of each plane lie on one face of the box, and the planes may lie on
+/// different faces. The candidates are the best boxes of the single planes; the box is the candidate with which the
+/// segments and the strokes of all planes agree best. Ignores `room.strokes`. The order of the planes does not matter.
+pub fn find_common(room: &RoomView, planes: &[PlaneEvidence], size: [usize; 2], job: Job) -> Result<Layout> {
+    let axes = facing_axes(room.perspective);
+    let share = 1.0 / planes.len().max(1) as f64;
+    let (mut candidates, mut evidence) = (Vec::new(), Vec::new());
+    for (k, plane) in planes.iter().enumerate() {
+        let part = job.part(share * k as f64, (share * (k + 1) as f64).min(1.0));
+        let room = RoomView { strokes: plane.strokes, ..*room };
+        candidates.push(find(&room, plane.surfaces, size, part)?);
+        evidence.push(Evidence::gather(&room, plane.surfaces, &axes, size, part)?);
+    }
+    // Add up the strokes in ascending order, so that the sum does not depend on the order of the planes.
+    let agreement = |layout: &Layout| {
+        let mut strokes: Vec<f64> = evidence.iter().map(|plane| plane.strokes_on_best_face(&layout.sides)).collect();
+        strokes.sort_by(f64::total_cmp);
+        layout.score - layout.sides.map(prior_cost).iter().sum::<f64>() + strokes.iter().sum::<f64>()
+    };
+    let rank = |layout: &Layout| (agreement(layout), layout.sides, layout.trust);
+    let best = candidates.into_iter().max_by(|a, b| {
+        let ((a, a_sides, a_trust), (b, b_sides, b_trust)) = (rank(a), rank(b));
+        let sides = || a_sides.iter().zip(&b_sides).map(|(a, b)| a.total_cmp(b)).find(|order| order.is_ne());
+        a.total_cmp(&b).then_with(|| sides().unwrap_or(a_trust.total_cmp(&b_trust)))
+    });
+    best.ok_or_else(|| Error::argument("there is no plane; give the strokes of at least one"))
+}
+
+/// Cost of the distance of one side, by the prior.
+fn prior_cost(side: f64) -> f64 {
+    PRIOR_COST * (side / PRIOR_SIDE).ln().powi(2)
+}
+
 /// Returns rays over the whole photo, in room axes.
 fn rays(room: &RoomView, axes: &DMat3, [width, height]: [usize; 2]) -> Vec<DVec3> {
     let to_room = axes.transpose();
@@ -148,7 +187,6 @@ impl Tables {
         // Each task fills one row of the table of one quadrant.
         let rows = [0, 1, 2, 3].map(|part| values[part % 2].len());
         let tasks: Vec<(usize, usize)> = (0..4).flat_map(|part| (0..rows[part]).map(move |row| (part, row))).collect();
-        let prior_cost = |value: f64| PRIOR_COST * maths::powi(maths::ln(value / PRIOR_SIDE), 2);
         let filled = exec::map(tasks.len(), job, |task| {
             let (part, row) = tasks[task];
             let (wall, level) = (part % 2, 2 + part / 2);

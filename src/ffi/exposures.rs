@@ -8,9 +8,11 @@
 //! metadata, so that luxfer_photo_metadata.white_luminance holds for the merged image too. Values above 1 are light
 //! that the reference clips.
 //!
-//! The photos must be linear once they are loaded, as developed raw files and photos with the sRGB curve are. Where a
-//! camera applied another tone curve, the ratio of two exposures depends on the brightness, and lamps become too bright
-//! or too dark.
+//! Developed raw files and photos with the sRGB curve are linear once they are loaded. Where a camera applied another
+//! tone curve, the ratio of two exposures depends on the brightness, and lamps would become too bright or too dark. If
+//! the exposures are known, the library recovers this curve from the photos and undoes it; the report states the curve
+//! and its error. If the exposures are unknown, the photos must be linear: they determine a curve only up to an
+//! exponent.
 
 use super::context::{Context, luxfer_context};
 use super::guard::enter;
@@ -20,7 +22,8 @@ use super::params::{self, Report, Versioned, flag, versioned};
 use super::pointer::{Out, bytes};
 use super::status::luxfer_status;
 use crate::error::{Error, Result};
-use crate::image::bracket::{self, MAX_PHOTOS, Params, Source};
+use crate::image::bracket::{self, CURVE_VALUES, MAX_PHOTOS, Params, Source, ToneCurve};
+use crate::image::colour::srgb_to_linear;
 use crate::image::photo::PhotoMetadata;
 use std::sync::Arc;
 
@@ -34,6 +37,14 @@ pub const LUXFER_EXPOSURE_SOURCE_BOTH: luxfer_exposure_source = 0;
 pub const LUXFER_EXPOSURE_SOURCE_METADATA: luxfer_exposure_source = 1;
 /// From pixels that two neighbouring exposures both show well.
 pub const LUXFER_EXPOSURE_SOURCE_PIXELS: luxfer_exposure_source = 2;
+
+/// The tone curve with which photos were taken: a LUXFER_TONE_CURVE_ value.
+pub type luxfer_tone_curve = i32;
+/// That of sRGB, unless the exposures are known and the photos agree significantly better with another curve, which is
+/// then undone. Exposures are known from the field exposures, or from the metadata.
+pub const LUXFER_TONE_CURVE_RECOVERED: luxfer_tone_curve = 0;
+/// That of sRGB: the photos are linear as they are.
+pub const LUXFER_TONE_CURVE_SRGB: luxfer_tone_curve = 1;
 
 /// Settings for merging exposures. Fill them with luxfer_merge_params_init.
 #[repr(C)]
@@ -59,18 +70,24 @@ pub struct luxfer_merge_params {
     /// Exposure of each photo in any unit, such as seconds, in [1e-9, 1e9]; all 0, the default: see the field source.
     /// Elements beyond the number of photos must be 0.
     pub exposures: [f64; 16],
+    /// Tone curve of the photos: a LUXFER_TONE_CURVE_ value; default LUXFER_TONE_CURVE_RECOVERED.
+    pub tone_curve: luxfer_tone_curve,
+    /// Reserved; always 0.
+    pub reserved: u32,
 }
 
-versioned!(luxfer_merge_params, [160], {
+versioned!(luxfer_merge_params, [160, 168], {
     let d = Params::default();
     Self {
-        struct_size: 160,
+        struct_size: 168,
         source: LUXFER_EXPOSURE_SOURCE_BOTH,
         reference: -1,
         keep_moving: u32::from(d.keep_moving),
         max_shift: d.max_shift,
         saturation: d.saturation,
         exposures: [0.0; 16],
+        tone_curve: LUXFER_TONE_CURVE_RECOVERED,
+        reserved: 0,
     }
 });
 
@@ -95,6 +112,16 @@ impl luxfer_merge_params {
                 self.reference
             )));
         }
+        let tone_curve = match self.tone_curve {
+            LUXFER_TONE_CURVE_RECOVERED => ToneCurve::Recovered,
+            LUXFER_TONE_CURVE_SRGB => ToneCurve::Srgb,
+            other => {
+                return Err(Error::argument(format!("tone_curve is {other}; it must be a LUXFER_TONE_CURVE_ value")));
+            }
+        };
+        if self.reserved != 0 {
+            return Err(Error::argument(format!("reserved is {}; it must be 0", self.reserved)));
+        }
         let are_given = given.iter().any(|&v| v != 0.0);
         Ok(Params {
             source,
@@ -103,6 +130,7 @@ impl luxfer_merge_params {
             keep_moving: flag(self.keep_moving, "keep_moving")?,
             max_shift: self.max_shift,
             saturation: self.saturation,
+            tone_curve,
         })
     }
 }
@@ -139,11 +167,24 @@ pub struct luxfer_merge_report {
     /// Row of each photo that shows the part of the view that row 0 of the reference shows; below 0 if the photo does
     /// not show that part.
     pub shift_y: [i32; 16],
+    /// The tone curve that the photos were taken to have: LUXFER_TONE_CURVE_RECOVERED if another curve than that of
+    /// sRGB was recovered and undone, else LUXFER_TONE_CURVE_SRGB.
+    pub tone_curve: luxfer_tone_curve,
+    /// 1 if the photos contradict the tone curve of sRGB and no other curve was recovered, because the exposures are
+    /// unknown, the levels of the photos determine no curve, or the settings say so: the light of the merged image is
+    /// then wrong by more than noise, and you should state the exposures. 0 otherwise.
+    pub contradicts_srgb: u32,
+    /// Largest error of the recovered curve: of the light at a code, relative to white, as a share of this
+    /// light, over the codes that the photos show. 0 without a recovered curve.
+    pub tone_curve_error: f64,
+    /// Light at the codes 0, 1/16, ... 1 of the photos' files, relative to white: of the recovered curve, or else of
+    /// sRGB.
+    pub tone_curve_light: [f64; 17],
 }
 
-versioned!(luxfer_merge_report, [544], {
+versioned!(luxfer_merge_report, [544, 696], {
     Self {
-        struct_size: 544,
+        struct_size: 696,
         count: 0,
         reference: 0,
         reserved: 0,
@@ -154,6 +195,10 @@ versioned!(luxfer_merge_report, [544], {
         stated: [0.0; 16],
         shift_x: [0; 16],
         shift_y: [0; 16],
+        tone_curve: LUXFER_TONE_CURVE_SRGB,
+        contradicts_srgb: 0,
+        tone_curve_error: 0.0,
+        tone_curve_light: [0.0; 17],
     }
 });
 
@@ -162,6 +207,14 @@ impl luxfer_merge_report {
         let mut report = Self::defaults();
         (report.count, report.reference) = (found.photos.len() as u32, found.reference as u32);
         (report.clipped, report.moved) = (found.clipped, found.moved);
+        report.tone_curve_light = match &found.curve {
+            Some(curve) => curve.light,
+            None => std::array::from_fn(|k| f64::from(srgb_to_linear(k as f32 / (CURVE_VALUES - 1) as f32))),
+        };
+        if let Some(curve) = &found.curve {
+            (report.tone_curve, report.tone_curve_error) = (LUXFER_TONE_CURVE_RECOVERED, curve.error);
+        }
+        report.contradicts_srgb = u32::from(found.contradicts_srgb);
         for (i, photo) in found.photos.iter().enumerate().take(MAX_PHOTOS) {
             (report.exposures[i], report.errors[i], report.stated[i]) = (photo.exposure, photo.error, photo.stated);
             (report.shift_x[i], report.shift_y[i]) = (photo.shift[0] as i32, photo.shift[1] as i32);

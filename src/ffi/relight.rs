@@ -56,12 +56,13 @@ pub const LUXFER_CONSTRAINT_AT_MOST: luxfer_constraint = 2;
 pub type luxfer_outcome = i32;
 /// The target, or its limit, is met.
 pub const LUXFER_OUTCOME_SATISFIED: luxfer_outcome = 0;
-/// The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps, two goals
-/// contradict each other.
+/// The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps and for
+/// luxfer_transfer_start_all, two targets contradict each other.
 pub const LUXFER_OUTCOME_TOO_BRIGHT: luxfer_outcome = 1;
 /// No light of this channel reaches the target: the channel gets the mean scale of the channels that meet the target.
 pub const LUXFER_OUTCOME_DARK: luxfer_outcome = 2;
-/// All lamps at their largest power are too weak, or two goals contradict each other. Occurs only for a luxfer_lamps.
+/// All lamps at their largest power are too weak, or two goals contradict each other. Occurs only for a luxfer_lamps,
+/// and for transfers whose light luxfer_transfer_start_all solves for together.
 pub const LUXFER_OUTCOME_TOO_DIM: luxfer_outcome = 3;
 
 /// Settings of a relighting. Fill them with luxfer_relight_params_init.

@@ -93,6 +93,40 @@ impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Stage<I, O> {
     }
 }
 
+/// Claims several stages for one job: none of them may be busy, or be named twice. If one cannot be claimed, the claims
+/// of the others are dropped.
+pub(super) fn claim_all<I, O>(stages: &[Arc<Stage<I, O>>], name: &str) -> Result<Claims<I, O>> {
+    let mut claims = Vec::with_capacity(stages.len());
+    for (k, stage) in stages.iter().enumerate() {
+        if let Some(first) = stages[..k].iter().position(|other| Arc::ptr_eq(other, stage)) {
+            return Err(Error::argument(format!("{name}[{k}] is {name}[{first}] too; each may be named once")));
+        }
+        let state = &mut *lock(&stage.state);
+        state.check_idle().map_err(|e| e.context(format_args!("{name}[{k}]")))?;
+        state.busy = true;
+        claims.push(Claim(stage.clone()));
+    }
+    Ok(Claims(claims))
+}
+
+/// Several stages that one job keeps busy.
+pub(super) struct Claims<I, O>(Vec<Claim<I, O>>);
+
+impl<I: Clone + Send + 'static, O: Send + Sync + 'static> Claims<I, O> {
+    /// Starts a job that gets the stages and publishes their results.
+    pub(super) fn start(
+        self,
+        context: &Arc<Context>,
+        place: *mut *mut luxfer_job,
+        work: impl FnOnce(&dyn Fn(usize, O), crate::job::Job) -> Result<()> + Send + 'static,
+    ) -> Result<()> {
+        let out = Out::new(place, "job")?;
+        let job = Job::start(context, move |job| work(&|k, output| self.0[k].0.publish(output), job))?;
+        out.set(handle::give(Arc::new(job)));
+        Ok(())
+    }
+}
+
 impl<I, O> StageState<I, O> {
     fn check_idle(&self) -> Result<()> {
         if self.busy {

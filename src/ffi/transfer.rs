@@ -25,7 +25,7 @@ use super::render::luxfer_render_params;
 use super::scene::{SceneObject, luxfer_scene};
 use super::scene_parts::luxfer_camera_params;
 use super::segment::{luxfer_segment, luxfer_segment_params};
-use super::stage::Stage as Runner;
+use super::stage::{Stage as Runner, claim_all};
 use super::status::luxfer_status;
 use super::strokes::{LUXFER_PHASE_LIGHTS, LUXFER_PHASE_PLANE, Painted, luxfer_phase, luxfer_strokes, unknown_phase};
 use crate::error::{Error, Result};
@@ -487,6 +487,73 @@ pub unsafe extern "C" fn luxfer_transfer_start(
             Ok(transfer.results)
         })
     })
+}
+
+/// Starts a job that runs the stages first to last of several transfers, one for each plane with lights that the photo
+/// shows, such as a ceiling and a wall with sconces, or two levels of a ceiling. transfers holds count handles, in [1,
+/// 16], each at most once; params holds count pointers to settings, each of which may be NULL for the defaults, or is
+/// NULL for the defaults of all. The transfers must have the same photo and the same scene; each has strokes, a
+/// surface, and other inputs of its own. With one transfer, the job is that of luxfer_transfer_start. The results do
+/// not depend on the order of the transfers. The caller releases *job. Any thread.
+///
+/// The stages VIEW and FEATURES run once for all transfers whose settings and inputs for them are equal, so that there
+/// is one camera and one layout of the room: the layout with which the strokes of all planes agree best. Masks,
+/// unwarped image, texture, warnings and reports are those of each transfer; seconds of luxfer_transfer_report is the
+/// time that a stage took for all of them. The stage EMISSION places all textures in one scene, and the stage RELIGHT
+/// solves for the light of all planes together, because the lamps of each plane also light the other planes. Each
+/// transfer then has the same LUXFER_SCENE_LIT, with the light of all planes. In luxfer_transfer_get_solution,
+/// background includes the light of the other planes; a plane that they alone make brighter than in the photo gets no
+/// light, and a warning. The stage RENDER runs once for all transfers with equal cameras and settings.
+///
+/// Each plane must be parallel to two of the room's three axes: a ceiling, a floor or a wall (plane_axes of
+/// luxfer_rectify_params). Sloped planes are not unwarped. For a sloped plane, make the texture by luxfer_image_warp
+/// and a luxfer_emission, and set it by luxfer_transfer_set_texture; the transfer then needs only its masks.
+///
+/// As luxfer_transfer_start; also LUXFER_INVALID_ARGUMENT if photos or scenes differ, if two transfers are one, or if
+/// white_luminance or the settings of RELIGHT differ; the job ends with it if two transfers light one triangle of the
+/// scene. LUXFER_INVALID_OPERATION if RELIGHT runs without EMISSION on transfers whose textures were not placed by one
+/// job. The message names the transfer by its index.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_transfer_start_all(
+    context: *mut luxfer_context,
+    transfers: *const *mut luxfer_transfer,
+    count: usize,
+    first: luxfer_stage,
+    last: luxfer_stage,
+    params: *const *const luxfer_transfer_params,
+    job: *mut *mut luxfer_job,
+) -> luxfer_status {
+    enter(context, |object| {
+        let context = object.context();
+        let (first, last) = (stage_of("first", first)?, stage_of("last", last)?);
+        if !(1..=transfer::MAX_PLANES).contains(&count) {
+            let most = transfer::MAX_PLANES;
+            return Err(Error::argument(format!("count is {count}; it must be in 1 to {most}")));
+        }
+        let named = |k: usize, e: Error| e.context(format_args!("transfers[{k}]"));
+        let stages = pointers(transfers.cast::<*const luxfer_transfer>(), count, "transfers")?.into_iter().enumerate();
+        let stages: Vec<_> = stages
+            .map(|(k, transfer)| handle::borrow_in(context, transfer, &format!("transfers[{k}]")))
+            .collect::<Result<_>>()?;
+        let settings =
+            if params.is_null() { vec![std::ptr::null(); count] } else { pointers(params, count, "params")? };
+        let claims = claim_all(&stages, "transfers")?;
+        let mut all = Vec::with_capacity(count);
+        for (k, (stage, settings)) in stages.iter().zip(settings).enumerate() {
+            all.push(params::read(settings).and_then(|params| snapshot(stage, params)).map_err(|e| named(k, e))?);
+        }
+        transfer::check_together(&all, first, last)?;
+        claims.start(context, job, move |publish, job| {
+            transfer::run_together(&mut all, first, last, job, &mut |k, results| publish(k, results.clone()))
+        })
+    })
+}
+
+/// Reads the caller's array of pointers, which may be at any alignment.
+fn pointers<T>(place: *const *const T, count: usize, name: &str) -> Result<Vec<*const T>> {
+    let array = bytes(place.cast(), count.saturating_mul(size_of::<*const T>()), name)?;
+    // SAFETY: element `i` lies in `array`, and every bit pattern of a pointer is valid.
+    Ok((0..count).map(|i| unsafe { array.as_ptr().cast::<*const T>().add(i).read_unaligned() }).collect())
 }
 
 /// Returns a copy of the transfer's inputs and results, with the settings of `params`.

@@ -37,8 +37,7 @@ pub fn lighting(transfer: &Transfer, goal: Goal, clock: Clock, job: Job) -> Resu
     let lit = check(transfer, goal)?;
     let (building, world) = timed(clock, || World::build(lit.scene.clone(), job.part(0.0, 0.2)));
     let world = world?;
-    let mesh = lit.placed.mesh;
-    let triangles: Vec<_> = (0..lit.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect();
+    let triangles = lit.triangles();
     let camera = transfer.viewpoint(&world, &lit);
     let strength =
         Strength::new((&world, lit.placed.material, &triangles), &transfer.params.relight, clock, job.part(0.2, 0.5))?;

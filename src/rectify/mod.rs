@@ -28,6 +28,7 @@
 //! - Short segments share a small bias, whose cause is unknown.
 //!
 //! Not modelled: lens distortion other than radial distortion with one coefficient; pixel aspect ratios other than 1;
+//! planes that are not parallel to two of the room's axes, such as sloped ceilings, which are unwarped as if they were;
 //! rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
 //! [`View::squareness`] reports their deviation from right angles.
 

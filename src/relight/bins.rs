@@ -1,18 +1,19 @@
-//! Sorts light into bins by its source: one bin for the whole emission, one per lamp, or one per cell of the emissive
-//! surface.
+//! Sorts light into bins by its source: one bin for the whole emission of each emitter, one per lamp, or one per cell
+//! of the emissive surface.
 
 use super::emission_lamps::EmissionLamps;
 use crate::render::{LightSource, PathSink, World};
 use glam::{DVec3, Vec2, Vec3};
 
 pub(super) struct Bins<'a> {
-    /// For each mesh, whether it has the emissive material to solve for.
-    of_emitter: Vec<bool>,
+    /// For each mesh, which of the emissive materials to solve for it has: its index in the list of emitters.
+    emitter_of: Vec<Option<usize>>,
+    emitters: usize,
     division: Partition<'a>,
 }
 
 pub(super) enum Partition<'a> {
-    /// One bin for all of the emission.
+    /// One bin per emitter, for all of its emission.
     Whole,
     /// One bin per lamp; light that comes from elsewhere counts as background.
     Lamps(&'a EmissionLamps),
@@ -22,12 +23,19 @@ pub(super) enum Partition<'a> {
 
 impl<'a> Bins<'a> {
     pub fn new(world: &World, emitter: usize, division: Partition<'a>) -> Self {
-        Self { of_emitter: world.scene().meshes.iter().map(|m| m.material == emitter).collect(), division }
+        Self { division, ..Self::of_emitters(world, &[emitter]) }
+    }
+
+    /// Sorts the light of several emitters: one bin for each material of the list.
+    pub fn of_emitters(world: &World, emitters: &[usize]) -> Self {
+        let emitter = |material: usize| emitters.iter().position(|&e| e == material);
+        let emitter_of = world.scene().meshes.iter().map(|m| emitter(m.material)).collect();
+        Self { emitter_of, emitters: emitters.len(), division: Partition::Whole }
     }
 
     pub fn count(&self) -> usize {
         match &self.division {
-            Partition::Whole => 1,
+            Partition::Whole => self.emitters,
             Partition::Lamps(lamps) => lamps.count(),
             Partition::Cells { width, height } => width * height,
         }
@@ -41,11 +49,9 @@ impl<'a> Bins<'a> {
             (LightSource::Punctual(index), Partition::Lamps(lamps)) => return lamps.find_light(index),
             _ => return None,
         };
-        if !self.of_emitter[mesh as usize] {
-            return None;
-        }
+        let emitter = self.emitter_of[mesh as usize]?;
         match &self.division {
-            Partition::Whole => Some(0),
+            Partition::Whole => Some(emitter),
             Partition::Lamps(lamps) => lamps.find(mesh, triangle, uv),
             Partition::Cells { width, height } => Some(cell(uv, *width, *height)),
         }

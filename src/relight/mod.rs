@@ -6,6 +6,9 @@
 //! emission must be multiplied by `(target - b) / r`. Because both means are Monte Carlo estimates, the solution has a
 //! confidence interval.
 //!
+//! Several emissive surfaces light each other's targets. [`run_together`] measures the response of each target to each
+//! of them, and solves for all scales at once.
+//!
 //! The light of the same paths can also be sorted by its source (`bins`):
 //!
 //! - By lamp: this gives the responses of several targets to thousands of lamps ([`lamp_responses`]). A small convex
@@ -22,6 +25,7 @@ mod band;
 mod bins;
 mod bounded;
 mod clipping;
+mod coupled;
 mod descent;
 mod dimming;
 mod emission_lamps;
@@ -34,6 +38,7 @@ mod photo_colour;
 mod placement;
 mod primaries;
 mod responses;
+mod several;
 mod sided;
 mod solution;
 mod solve;
@@ -45,11 +50,12 @@ pub use emission_lamps::EmissionLamps;
 pub use estimate::BATCHES;
 pub use groups::{Colour, GroupParams, GroupSolution, MAX_LEVELS, MAX_WEIGHT, Outcome, solve_groups};
 pub use importance::{Importance, ImportanceParams, Response};
-pub use params::{Fit, Params, Quantity, TargetGeometry};
+pub use params::{EmitterTarget, Fit, Params, Quantity, TargetGeometry};
 pub use photo_colour::{PhotoColour, TargetColour, photo_colour};
 pub use placement::{Aim, Placement, PlacementParams, Pose};
 pub use primaries::{MAX_PRIMARIES, Mixture, mix_primaries};
 pub use responses::{Aspect, Estimate, Goal, Responses, lamp_responses};
+pub use several::{MAX_EMITTERS, run_together};
 pub use sided::Constraint;
 pub use solution::{Solution, TargetStatus};
 pub use transport::{FIRST_ROUND, FORECAST_MARGIN};

@@ -36,6 +36,19 @@ pub enum TargetGeometry<'a> {
     Grid { origin: Vec3, across: Vec3, down: Vec3, normal: Vec3 },
 }
 
+/// One of several emitters, with the target that decides its scale together with the targets of the others.
+#[derive(Clone, Copy, Debug)]
+pub struct EmitterTarget<'a> {
+    /// Index of the emitting material to solve for; it differs between the planes.
+    pub emitter: usize,
+    /// The triangles of the target surface, as for [`super::Input`].
+    pub target_triangles: &'a [(usize, usize)],
+    /// Mean radiance of the target to achieve, as for [`super::Input`].
+    pub target: Vec3,
+    /// Whether the target of each channel is exact or a limit.
+    pub constraint: [Constraint; 3],
+}
+
 /// The parameters of relighting.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {

@@ -70,7 +70,7 @@ pub(super) fn run(measured: &BatchMeasurements, target: DVec3, constraint: [Cons
         constraint,
         response,
         background,
-        delta_e: colour_interval(&answers, response, seen),
+        delta_e: colour_interval(seen, |b| response * DVec3::from(answers.each_ref().map(|a| a.deviations[b]))),
         paths: measured.paths,
     })
 }
@@ -140,16 +140,17 @@ impl Channel {
     }
 }
 
-/// Computes the CIEDE2000 difference below which 95 % of the target's colour errors stay.
+/// Computes the CIEDE2000 difference below which 95 % of the target's colour errors stay. `deviation` returns how far
+/// the pseudo-value of a batch changes the light of the target, compared with the solution.
 ///
-/// For each batch, the target's colour is changed by the light of `deviations / √(BATCHES - 1)`: over the batches, this
-/// change has the standard error of the mean. The result is the root mean square of the colour differences, times
-/// Student's quantile. The three channels of a batch deviate together, so their correlation is included. The exposure
-/// shows the target as a middle grey.
-fn colour_interval(answers: &[Answer; 3], response: DVec3, target: DVec3) -> f64 {
+/// For each batch, the target's colour is changed by the deviation / √(BATCHES - 1): over the batches, this change has
+/// the standard error of the mean. The result is the root mean square of the colour differences, times Student's
+/// quantile. The three channels of a batch deviate together, so their correlation is included. The exposure shows the
+/// target as a middle grey.
+pub(super) fn colour_interval(target: DVec3, deviation: impl Fn(usize) -> DVec3) -> f64 {
     let squares = (0..BATCHES).map(|b| {
-        let deviation = DVec3::from(std::array::from_fn(|c| answers[c].deviations[b])) / (BATCHES as f64 - 1.0).sqrt();
-        maths::powi(colour::delta_e_from(target, target + deviation * response), 2)
+        let change = deviation(b) / (BATCHES as f64 - 1.0).sqrt();
+        maths::powi(colour::delta_e_from(target, target + change), 2)
     });
     STUDENT_T * (squares.sum::<f64>() / BATCHES as f64).sqrt()
 }

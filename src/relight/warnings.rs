@@ -37,7 +37,9 @@ fn explain(status: TargetStatus) -> &'static str {
     match status {
         TargetStatus::Met => "met",
         TargetStatus::TooBright => "which other lights alone make too bright",
-        TargetStatus::TooDim => "which the lamps at their limits leave too dim",
+        TargetStatus::TooDim => {
+            "which is too dim because the lamps are at their limits or the targets of several planes contradict each other"
+        }
         TargetStatus::Dark => "of which no light reaches the target",
     }
 }

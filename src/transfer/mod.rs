@@ -4,17 +4,23 @@
 //! A transfer runs the stages in order and passes data between them; the stages do not depend on each other's code.
 //! The caller can read and replace every intermediate result, and resume the run at any stage. A better depth map, a
 //! hand-drawn mask or known vanishing points can thus replace the result of a stage.
+//!
+//! A photo may show lights on several planes, such as a ceiling and a wall. Each plane has a transfer of its own;
+//! [`run_together`] runs them in one job, with one camera and one layout of the room, and solves for the light of all
+//! planes together.
 
 mod check;
 mod pattern;
 mod stages;
 mod texel_zones;
+mod together;
 mod warnings;
 
 pub use crate::emission::{CameraDistance, Scale};
 pub use crate::relight::TargetColour;
 pub use check::check_zones;
 pub use pattern::Pattern;
+pub use together::{MAX_PLANES, check_together, run_together};
 
 use crate::emission::{self, Emission};
 use crate::error::{Error, ErrorKind, Result};
@@ -146,6 +152,8 @@ pub struct LitScene {
     pub scene: Arc<Scene>,
     pub surface: Surface,
     pub placed: Placed,
+    /// Materials of the lamps that the other transfers of one job have placed in this scene ([`run_together`]).
+    pub others: Vec<usize>,
     /// Metres per texel along the u axis of the surface.
     pub texel_size: f64,
 }

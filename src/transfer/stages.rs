@@ -6,8 +6,8 @@ use crate::emission::{CameraDistance, Emission, Sizing, TexelGrid};
 use crate::error::{Error, ErrorKind, Result};
 use crate::job::Job;
 use crate::render::World;
-use crate::scene::Camera;
-use crate::scene::surface::{self, Surface};
+use crate::scene::surface::{self, Placed, Surface};
+use crate::scene::{Camera, Scene};
 use crate::schedule::{self, Fixture};
 use crate::{emission, features, rectify, relight, render, segment};
 use glam::{UVec2, Vec3};
@@ -15,10 +15,17 @@ use std::sync::Arc;
 
 /// Maximum number of corrections of the view. The second correction uses the lamps that were found after the first
 /// one. [bench photos:tune]
-const LAMP_ROUNDS: i32 = 2;
+pub(super) const LAMP_ROUNDS: i32 = 2;
 /// Maximum number of times that the room is enlarged if its plane is a proposal. Each time, further rows of lamps may
 /// be found. [bench photos:nostrokes]
-const ENLARGEMENTS: i32 = 2;
+pub(super) const ENLARGEMENTS: i32 = 2;
+
+/// An emissive texture for a surface of the scene, before it is placed there.
+pub(super) struct MadeTexture {
+    pub surface: Surface,
+    pub emission: Emission,
+    pub distance: Option<CameraDistance>,
+}
 
 impl Transfer {
     pub(super) fn find_view(&mut self, job: Job) -> Result<()> {
@@ -36,20 +43,27 @@ impl Transfer {
     pub(super) fn compute_features(&mut self, layout: Option<features::Layout>, job: Job) -> Result<()> {
         let photo = need(&self.input.photo, "set the photo")?;
         let depth = self.input.depth.as_ref().map(|(image, kind)| features::DepthMap { image, kind: *kind });
-        // Strokes on the plane are also evidence for the layout of the room.
-        let painted = self.input.strokes.plane_strokes();
-        let strokes: Vec<_> =
-            painted.map(|s| features::PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect();
-        let view = self.results.view.as_ref();
-        let room = view.map(|v| features::RoomView {
-            perspective: &v.perspective,
-            segments: &v.segments,
-            strokes: &strokes,
-            layout,
-        });
+        let strokes = self.plane_evidence();
+        let room = self.room(&strokes, layout);
         let input = features::Input { photo, depth, room };
         self.results.features = Some(Arc::new(features::run(&input, &self.params.features, job)?));
         Ok(())
+    }
+
+    /// The strokes on the plane and beside it, which are also evidence for the layout of the room.
+    pub(super) fn plane_evidence(&self) -> Vec<features::PlaneStroke<'_>> {
+        let painted = self.input.strokes.plane_strokes();
+        painted.map(|s| features::PlaneStroke { pixels: &s.pixels, positive: s.positive }).collect()
+    }
+
+    /// The room as the features need it; `None` without a view.
+    pub(super) fn room<'a>(
+        &'a self,
+        strokes: &'a [features::PlaneStroke<'a>],
+        layout: Option<features::Layout>,
+    ) -> Option<features::RoomView<'a>> {
+        let view = self.results.view.as_ref()?;
+        Some(features::RoomView { perspective: &view.perspective, segments: &view.segments, strokes, layout })
     }
 
     pub(super) fn segment_plane(&mut self, job: Job) -> Result<()> {
@@ -97,22 +111,23 @@ impl Transfer {
         Ok(())
     }
 
-    /// Replaces the view by a view in which all lamps, once unwarped, have the same size and shape. Does so only if the
-    /// photo's lines do not determine the view, the caller has not set it, and the lamps fit the new view clearly
-    /// better. Returns whether the view was replaced.
-    fn correct_view(&mut self, job: Job) -> Result<bool> {
+    /// Returns a view in which all lamps, once unwarped, have the same size and shape; `None` if the photo's lines
+    /// determine the view, if the caller has set it, or if the lamps do not fit the new view clearly better.
+    pub(super) fn corrected_view(&self, job: Job) -> Result<Option<rectify::View>> {
         let Results { view: Some(view), plane: Some(plane), lights: Some(lights), .. } = &self.results else {
-            return Ok(false);
+            return Ok(None);
         };
         if self.results.view_is_given {
-            return Ok(false);
+            return Ok(None);
         }
-        let by_lines = self.results.view_by_lines.as_ref().unwrap_or(view).clone();
-        let Some(view) = by_lines.with_lamps_alike(&plane.mask, &lights.mask, job.part(0.0, 0.1))? else {
-            return Ok(false);
-        };
-        self.results.view = Some(Arc::new(view));
-        self.results.view_by_lines = Some(by_lines);
+        let by_lines = self.results.view_by_lines.as_ref().unwrap_or(view);
+        by_lines.with_lamps_alike(&plane.mask, &lights.mask, job)
+    }
+
+    /// Replaces the view by the corrected one, if there is one. Returns whether the view was replaced.
+    fn correct_view(&mut self, job: Job) -> Result<bool> {
+        let Some(view) = self.corrected_view(job.part(0.0, 0.1))? else { return Ok(false) };
+        self.results.correct_view(Arc::new(view));
         self.compute_features(None, job.part(0.1, 0.5))?;
         self.segment_plane(job.part(0.5, 0.75))?;
         self.segment_lights(job.part(0.75, 1.0))?;
@@ -122,7 +137,7 @@ impl Transfer {
     /// If lamps lie beyond the plane of the room's layout, and a larger room that contains them is plausible, enlarges
     /// the room. Then finds the plane and the lights again in the larger room. Returns true if the room may have to be
     /// enlarged once more: the room was enlarged, and its plane is a proposal without any plane stroke.
-    fn enlarge_room(&mut self, job: Job) -> Result<bool> {
+    pub(super) fn enlarge_room(&mut self, job: Job) -> Result<bool> {
         let Results { view: Some(view), features: Some(features), plane: Some(plane), lights: Some(lights), .. } =
             &self.results
         else {
@@ -158,8 +173,19 @@ impl Transfer {
         Ok(())
     }
 
+    /// Makes the emissive texture, and places it on the surface, with the luminance that the lamps have in the photo.
     pub(super) fn synthesise(&mut self, job: Job) -> Result<()> {
         let scene = need(&self.input.scene, "set the scene")?;
+        let made = self.make_texture(scene, job)?;
+        let mut lit = (**scene).clone();
+        let strength = Vec3::splat(self.params.white_luminance);
+        let placed = surface::place(&mut lit, &made.surface, made.emission.texture.clone(), strength)?;
+        self.results.keep(made, Arc::new(lit), placed, Vec::new());
+        Ok(())
+    }
+
+    /// Makes the emissive texture for the surface of the scene.
+    pub(super) fn make_texture(&self, scene: &Scene, job: Job) -> Result<MadeTexture> {
         let found = self.find_surface(scene)?;
         let pattern = &self.params.pattern;
         let surface = if pattern.rotation == 0.0 { found.clone() } else { found.turned(scene, pattern.rotation)? };
@@ -179,15 +205,7 @@ impl Transfer {
             emission.restrict(&zones, job.part(0.93, 0.95))?;
         }
 
-        // Place the texture on the surface, with the luminance that the lamps have in the photo.
-        let mut lit = (**scene).clone();
-        let strength = Vec3::splat(self.params.white_luminance);
-        let texel_size = f64::from(surface.size.x) / emission.texture.width as f64;
-        let placed = surface::place(&mut lit, &surface, emission.texture.clone(), strength)?;
-        self.results.distance = distance;
-        self.results.unsolved = Some(Arc::new(LitScene { scene: Arc::new(lit), surface, placed, texel_size }));
-        self.results.emission = Some(Arc::new(emission));
-        Ok(())
+        Ok(MadeTexture { surface, emission, distance })
     }
 
     /// Synthesises the texture from the unwarped lights, with the number of texels that the surface needs.
@@ -241,15 +259,10 @@ impl Transfer {
     }
 
     pub(super) fn relight(&mut self, job: Job) -> Result<()> {
-        let photo = need(&self.input.photo, "set the photo")?;
-        let plane = need(&self.results.plane, "run stage Plane")?;
-        let lights = need(&self.results.lights, "run stage Lights")?;
+        let target = self.target(job.part(0.0, 0.02))?;
         let unsolved = need(&self.results.unsolved, "run stage Emission")?;
-        let target = relight::photo_colour(self.params.target, photo, &plane.mask, &lights.mask, job.part(0.0, 0.02))?;
-
         let world = World::build(unsolved.scene.clone(), job.part(0.02, 0.1))?;
-        let mesh = unsolved.placed.mesh;
-        let triangles: Vec<_> = (0..unsolved.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect();
+        let triangles = unsolved.triangles();
         let input = relight::Input {
             world: &world,
             emitter: unsolved.placed.material,
@@ -270,6 +283,14 @@ impl Transfer {
         self.results.target = Some(target.colour);
         self.results.solution = Some(solution);
         Ok(())
+    }
+
+    /// Returns the colour that the surface should have, from the photo.
+    pub(super) fn target(&self, job: Job) -> Result<relight::PhotoColour> {
+        let photo = need(&self.input.photo, "set the photo")?;
+        let plane = need(&self.results.plane, "run stage Plane")?;
+        let lights = need(&self.results.lights, "run stage Lights")?;
+        relight::photo_colour(self.params.target, photo, &plane.mask, &lights.mask, job)
     }
 
     /// The camera from which a lit scene is rendered: the camera of the input, else the scene's first camera, else the
@@ -305,6 +326,21 @@ impl Results {
         Ok(schedule::fixtures(emission, &lit.surface, lit.scene.materials[lit.placed.material].emission))
     }
 
+    /// Keeps the texture, and the scene in which it has been placed.
+    pub(super) fn keep(&mut self, made: MadeTexture, scene: Arc<Scene>, placed: Placed, others: Vec<usize>) {
+        let MadeTexture { surface, emission, distance } = made;
+        let texel_size = f64::from(surface.size.x) / emission.texture.width as f64;
+        self.distance = distance;
+        self.unsolved = Some(Arc::new(LitScene { scene, surface, placed, others, texel_size }));
+        self.emission = Some(Arc::new(emission));
+    }
+
+    /// Replaces the view by one that the lamps have corrected, and keeps the view by lines.
+    pub(super) fn correct_view(&mut self, view: Arc<rectify::View>) {
+        let before = self.view.replace(view);
+        self.view_by_lines = self.view_by_lines.take().or(before);
+    }
+
     /// Undoes the corrections that earlier runs made because of the lamps: restores the view found from the photo's
     /// lines, and clears the lamps found beyond the plane, for which the room was enlarged.
     pub(super) fn forget_lamps(&mut self) {
@@ -316,6 +352,12 @@ impl Results {
 }
 
 impl LitScene {
+    /// The triangles of the surface that receives the lights, as pairs of indices (mesh, triangle).
+    pub fn triangles(&self) -> Vec<(usize, usize)> {
+        let mesh = self.placed.mesh;
+        (0..self.scene.meshes[mesh].triangles.len()).map(|t| (mesh, t)).collect()
+    }
+
     /// Returns a copy of the lit scene whose texture is multiplied by `strength` (cd/m² per channel).
     pub fn with_strength(&self, strength: Vec3) -> Self {
         let mut scene = (*self.scene).clone();
@@ -327,7 +369,9 @@ impl LitScene {
     /// coloured lamps.
     pub fn in_white(&self) -> Self {
         let mut scene = (*self.scene).clone();
-        scene.whiten_emission(self.placed.material);
+        for material in [self.placed.material].iter().chain(&self.others) {
+            scene.whiten_emission(*material);
+        }
         Self { scene: Arc::new(scene), ..self.clone() }
     }
 }

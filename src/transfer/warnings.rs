@@ -88,7 +88,13 @@ mod tests {
             let placed = Placed { mesh: 0, material: 0 };
             let mask = Image::new(10, 4, 1).unwrap();
             Results {
-                unsolved: Some(Arc::new(LitScene { scene: Arc::new(scene), surface, placed, texel_size: 0.01 })),
+                unsolved: Some(Arc::new(LitScene {
+                    scene: Arc::new(scene),
+                    surface,
+                    placed,
+                    others: vec![],
+                    texel_size: 0.01,
+                })),
                 plane: Some(Arc::new(Segmentation::from_confidence(&mask).unwrap())),
                 ..Results::default()
             }

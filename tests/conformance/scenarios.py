@@ -381,6 +381,13 @@ def transfer() -> Scenario:
     s.call("transfer_use_mask", stage, 1, s.make("transfer_get_image", stage, 1))
     s.call("transfer_set_texture", stage, s.image(16, 16))
     s.run("transfer_start", stage, 6, 7, settings)
+    # Two planes of the photo in one job.
+    second = s.make("transfer_create", s.context)
+    s.call("transfer_set_photo", second, photo)
+    s.call("transfer_set_scene", second, scene, "Floor")
+    s.call("transfer_set_strokes", second, painted)
+    s.call("transfer_set_texture", second, s.image(16, 16))
+    s.run("transfer_start_all", s.context, handles(stage, second), 2, 0, 5, None)
     return s
 
 

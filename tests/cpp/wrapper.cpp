@@ -209,6 +209,19 @@ void errors_have_status_and_words() {
     CHECK_STATUS(ok(job.poll()).outcome, LUXFER_DEGENERATE);
     CHECK_ERROR(job.wait_for(std::chrono::seconds(9)), LUXFER_DEGENERATE);
 
+    // A job of several transfers names the transfer that fails.
+    const std::array<luxfer::Transfer, 2> planes = {ok(luxfer::Transfer::create(context)),
+                                                    ok(luxfer::Transfer::create(context))};
+    CHECK_ERROR(luxfer::Transfer::start_all(context, {}), LUXFER_INVALID_ARGUMENT);
+    OK(planes[0].set_photo(new_image(context)));
+    const luxfer::Error unfit = error_of(
+        [&] { return luxfer::Transfer::start_all(context, planes, LUXFER_STAGE_FEATURES, LUXFER_STAGE_FEATURES); });
+    CHECK(std::strstr(unfit.what(), "transfers[1]") != nullptr);
+    OK(planes[1].set_photo(new_image(context)));
+    const std::array<luxfer::TransferParams, 2> settings;
+    OK(ok(luxfer::Transfer::start_all(context, planes, LUXFER_STAGE_FEATURES, LUXFER_STAGE_FEATURES, settings)).wait());
+    CHECK(ok(planes[1].image(LUXFER_TRANSFER_FEATURES)).get() != nullptr);
+
     luxfer::ContextParams bad;
     bad.num_threads = 5000;
     CHECK_ERROR(Context::create(bad), LUXFER_INVALID_ARGUMENT);
@@ -381,6 +394,7 @@ void exposures_merge() {
     const std::vector<float> samples = ok(merged.image.samples());
     CHECK(std::abs(samples[0] - 0.2f) < 1e-6f && std::abs(samples[2] - 2.0f) < 1e-6f);
     CHECK(merged.report.count == 2 && merged.report.exposures[1] == 0.25 && merged.report.clipped == 0);
+    CHECK(merged.report.tone_curve == LUXFER_TONE_CURVE_SRGB && merged.report.tone_curve_light[16] == 1);
     CHECK_ERROR(Image::merge_exposures(context, {}), LUXFER_INVALID_ARGUMENT);
 }
 

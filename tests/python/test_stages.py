@@ -66,6 +66,44 @@ class Transfer(Case):
         self.assertLess(turned(given), 1)
         self.assertGreater(turned(guessed), 2 * turned(given))
 
+    def test_two_planes_run_together(self):
+        photo, strokes = demo()
+        room = luxfer.Scene.demo(context(), "target-room")
+        mask = np.zeros((*photo.size[1::-1], 1), np.float32)
+        mask[-20:] = 1
+        settings = {"max_texels": 128, "relight": {"paths": 1 << 14}, "render": {"width": 32, "height": 18, "samples": 2}}
+
+        def planes():
+            ceiling, floor = (luxfer.Transfer(context(), photo, room, name) for name in ("Ceiling", "Floor"))
+            ceiling.set_strokes(strokes)
+            floor.set_texture(np.pad(np.ones((2, 2, 3), np.float32), ((7, 7), (7, 7), (0, 0))))
+            floor.use_mask("plane", mask)
+            floor.use_mask("lights", 0 * mask)
+            return [ceiling, floor]
+
+        both, seen = planes(), []
+        both[0].run(last="unwarp")
+        together = luxfer.Transfer.run_all(both, "emission", "render", [settings] * 2, seen.append)
+        self.assertIs(together[1], both[1])
+        self.assertEqual((seen, seen[-1]), (sorted(seen), 1.0))
+        scales = [np.array(plane.solution.scale) for plane in both]
+        np.testing.assert_array_equal(both[0].image("render").numpy(), both[1].image("render").numpy())
+
+        # In the other order, the results are the same; the floor's light is in the background of the ceiling.
+        again = planes()
+        again[0].run(last="unwarp")
+        luxfer.Transfer.run_all(again[::-1], "emission", "relight", settings)
+        for scale, plane in zip(scales, again):
+            np.testing.assert_array_equal(scale, plane.solution.scale)
+        self.assertTrue((np.array(both[0].solution.background) > 0).all())
+
+        with self.assertRaisesRegex(errors.InvalidArgument, r"transfers\[1\].*transfers\[0\]"):
+            luxfer.Transfer.run_all([both[0], both[0]])
+        with self.assertRaisesRegex(ValueError, "settings of 1 transfers for 2"):
+            luxfer.Transfer.run_all(both, params=[settings])
+        with self.assertRaisesRegex(ValueError, "no transfers"):
+            luxfer.Transfer.run_all([])
+
     def test_the_stages_one_by_one_make_what_the_transfer_makes(self):
         photo, strokes = demo()
         view = luxfer.Rectify(context(), photo).run()

@@ -6,6 +6,8 @@
 #include "photo.hpp"
 #include "render.hpp"
 
+#include <vector>
+
 namespace luxfer {
 
 /// The settings of a transfer. It points to the settings of the stages, which must live until start() returns.
@@ -73,6 +75,26 @@ public:
     /// Runs all stages.
     Result<Job> start(const luxfer_transfer_params &params = TransferParams()) const {
         return start(LUXFER_STAGE_VIEW, LUXFER_STAGE_RENDER, params);
+    }
+
+    /// Runs the stages first to last of several transfers, one for each plane with lights in one photo, and solves for
+    /// their light together; see luxfer_transfer_start_all. `params` holds the settings of each transfer, or is empty
+    /// for the defaults.
+    static Result<Job> start_all(const Context &context, Span<const Transfer> transfers,
+                                 luxfer_stage first = LUXFER_STAGE_VIEW, luxfer_stage last = LUXFER_STAGE_RENDER,
+                                 Span<const TransferParams> params = {}) {
+        std::vector<luxfer_transfer *> handles;
+        for (const Transfer &transfer : transfers)
+            handles.push_back(transfer.get());
+        std::vector<const luxfer_transfer_params *> settings;
+        for (const TransferParams &of_transfer : params)
+            settings.push_back(&of_transfer);
+        settings.resize(settings.empty() ? 0 : handles.size(), nullptr);
+        luxfer_job *job = nullptr;
+        const luxfer_status status =
+            luxfer_transfer_start_all(context.get(), handles.data(), handles.size(), first, last,
+                                      settings.empty() ? nullptr : settings.data(), &job);
+        return detail::to_result(context.get(), status, Job(context, job));
     }
 
     // Results, available as soon as their stage has ended.

@@ -73,6 +73,8 @@ LUXFER_FILE_COLOUR_DATA = 5
 LUXFER_EXPOSURE_SOURCE_BOTH = 0
 LUXFER_EXPOSURE_SOURCE_METADATA = 1
 LUXFER_EXPOSURE_SOURCE_PIXELS = 2
+LUXFER_TONE_CURVE_RECOVERED = 0
+LUXFER_TONE_CURVE_SRGB = 1
 LUXFER_DEPTH_ALONG_Z = 0
 LUXFER_DEPTH_ALONG_RAY = 1
 LUXFER_PHASE_PLANE = 0
@@ -482,8 +484,10 @@ class luxfer_merge_params(Structure):
         ("max_shift", c_double),
         ("saturation", c_double),
         ("exposures", c_double * 16),
+        ("tone_curve", c_int32),
+        ("reserved", c_uint32),
     ]
-    enumerations: dict[str, type] = {"source": types.ExposureSource}
+    enumerations: dict[str, type] = {"source": types.ExposureSource, "tone_curve": types.ToneCurve}
     struct_type = LUXFER_STRUCT_MERGE_PARAMS
 
 
@@ -503,7 +507,12 @@ class luxfer_merge_report(Structure):
         ("stated", c_double * 16),
         ("shift_x", c_int32 * 16),
         ("shift_y", c_int32 * 16),
+        ("tone_curve", c_int32),
+        ("contradicts_srgb", c_uint32),
+        ("tone_curve_error", c_double),
+        ("tone_curve_light", c_double * 17),
     ]
+    enumerations: dict[str, type] = {"tone_curve": types.ToneCurve}
     result = types.MergeReport
 
 
@@ -1777,6 +1786,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_transfer_use_segment": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("segment", POINTER(luxfer_segment))]),
     "luxfer_transfer_use_mask": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("phase", c_int32), ("mask", POINTER(luxfer_image))]),
     "luxfer_transfer_start": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("first", c_int32), ("last", c_int32), ("params", POINTER(luxfer_transfer_params)), ("job", POINTER(POINTER(luxfer_job)))]),
+    "luxfer_transfer_start_all": (c_int32, [("context", POINTER(luxfer_context)), ("transfers", POINTER(POINTER(luxfer_transfer))), ("count", c_size_t), ("first", c_int32), ("last", c_int32), ("params", POINTER(POINTER(luxfer_transfer_params))), ("job", POINTER(POINTER(luxfer_job)))]),
     "luxfer_transfer_get_image": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("kind", c_int32), ("image", POINTER(POINTER(luxfer_image)))]),
     "luxfer_transfer_get_scene": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("kind", c_int32), ("scene", POINTER(POINTER(luxfer_scene)))]),
     "luxfer_transfer_get_report": (c_int32, [("transfer", POINTER(luxfer_transfer)), ("report", POINTER(luxfer_transfer_report)), ("size", c_size_t)]),

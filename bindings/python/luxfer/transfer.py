@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ctypes
 import os
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from . import _abi, _params
+from ._handle import call
 from ._pointers import POINTER
 from .image import Image, image_of
 from .job import Job, Progress, StageBase
@@ -133,6 +135,50 @@ class Transfer(StageBase):
     ) -> Transfer:
         """Runs the stages from first to last and waits for them; see start."""
         return self.start(first, last, **params).wait(progress)
+
+    @staticmethod
+    def start_all(
+        transfers: Sequence[Transfer],
+        first: Stage | str = Stage.VIEW,
+        last: Stage | str = Stage.RENDER,
+        params: TransferParams | Sequence[TransferParams] | None = None,
+    ) -> Job[list[Transfer]]:
+        """Starts the stages from first to last of several transfers, one for each plane with lights that a photo shows,
+        such as a ceiling and a wall with sconces. They have one photo and one scene; camera and features are computed
+        once, and the light of all planes is solved for together. params are the settings of all transfers, or a list
+        with the settings of each."""
+        transfers = list(transfers)
+        if not transfers:
+            raise ValueError("there are no transfers; give one for each plane")
+        each = [params or {}] * len(transfers) if params is None or isinstance(params, Mapping) else list(params)
+        if len(each) != len(transfers):
+            raise ValueError(f"there are settings of {len(each)} transfers for {len(transfers)}")
+        keep: list[Any] = []
+        settings = [_params.fill(_abi.luxfer_transfer_params, dict(one), keep) for one in each]
+        context, count = transfers[0]._context, len(transfers)
+        handles = (POINTER(_abi.luxfer_transfer) * count)(*(transfer.handle for transfer in transfers))
+        pointers = (POINTER(_abi.luxfer_transfer_params) * count)(*(ctypes.pointer(one) for one in settings))
+        job = POINTER(_abi.luxfer_job)()
+        stages = _params.member(Stage, first), _params.member(Stage, last)
+        call(context, "luxfer_transfer_start_all", context, handles, count, *stages, pointers, job)
+        return Job._of(transfers, context, job)
+
+    @staticmethod
+    def run_all(
+        transfers: Sequence[Transfer],
+        first: Stage | str = Stage.VIEW,
+        last: Stage | str = Stage.RENDER,
+        params: TransferParams | Sequence[TransferParams] | None = None,
+        progress: Progress | None = None,
+    ) -> list[Transfer]:
+        """Runs the stages of several transfers together and waits for them; see start_all.
+
+        >>> transfer = Transfer(context, photo, room, "Ceiling")
+        >>> [same] = Transfer.run_all([transfer], last="view")
+        >>> same is transfer and same.view.focal > 0
+        True
+        """
+        return Transfer.start_all(transfers, first, last, params).wait(progress)
 
     # -- results
 

@@ -101,6 +101,16 @@ class ExposureSource(IntEnum):
     """From pixels that two neighbouring exposures both show well."""
 
 
+class ToneCurve(IntEnum):
+    """The tone curve with which photos were taken."""
+
+    RECOVERED = 0
+    """That of sRGB, unless the exposures are known and the photos agree significantly better with another
+    curve, which is then undone. Exposures are known from the field exposures, or from the metadata."""
+    SRGB = 1
+    """That of sRGB: the photos are linear as they are."""
+
+
 class DepthKind(IntEnum):
     """Quantity that a depth map measures."""
 
@@ -492,14 +502,14 @@ class Outcome(IntEnum):
     SATISFIED = 0
     """The target, or its limit, is met."""
     TOO_BRIGHT = 1
-    """The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps,
-    two goals contradict each other."""
+    """The other lights alone exceed the target, so the emission is 0 in this channel; or, for a luxfer_lamps
+    and for luxfer_transfer_start_all, two targets contradict each other."""
     DARK = 2
     """No light of this channel reaches the target: the channel gets the mean scale of the channels that meet
     the target."""
     TOO_DIM = 3
     """All lamps at their largest power are too weak, or two goals contradict each other. Occurs only for a
-    luxfer_lamps."""
+    luxfer_lamps, and for transfers whose light luxfer_transfer_start_all solves for together."""
 
 
 class PatternScale(IntEnum):
@@ -1149,6 +1159,8 @@ class MergeParams(TypedDict, total=False):
     exposures: Sequence[float]
     """Exposure of each photo in any unit, such as seconds, in [1e-9, 1e9]; all 0, the default: see the field
     source. Elements beyond the number of photos must be 0."""
+    tone_curve: ToneCurve | str | int
+    """Tone curve of the photos: ToneCurve; default ToneCurve.RECOVERED."""
 
 
 @dataclass(frozen=True)
@@ -1180,6 +1192,19 @@ class MergeReport:
     shift_y: tuple[int, ...]
     """Row of each photo that shows the part of the view that row 0 of the reference shows; below 0 if the photo
     does not show that part."""
+    tone_curve: ToneCurve
+    """The tone curve that the photos were taken to have: ToneCurve.RECOVERED if another curve than that of sRGB
+    was recovered and undone, else ToneCurve.SRGB."""
+    contradicts_srgb: int
+    """1 if the photos contradict the tone curve of sRGB and no other curve was recovered, because the exposures
+    are unknown, the levels of the photos determine no curve, or the settings say so: the light of the merged
+    image is then wrong by more than noise, and you should state the exposures. 0 otherwise."""
+    tone_curve_error: float
+    """Largest error of the recovered curve: of the light at a code, relative to white, as a share of this
+    light, over the codes that the photos show. 0 without a recovered curve."""
+    tone_curve_light: tuple[float, ...]
+    """Light at the codes 0, 1/16, ... 1 of the photos' files, relative to white: of the recovered curve, or
+    else of sRGB."""
 
 
 @dataclass(frozen=True)

@@ -69,13 +69,28 @@ pub struct ExposurePair {
 }
 
 impl ExposurePair {
+    /// Returns the ratio long / short that the caller or the metadata state; `None` if it is unknown, or to be taken
+    /// from the pixels.
+    pub fn known(&self, params: &Params) -> Option<Ratio> {
+        if !params.exposures.is_empty() {
+            return Some(self.given(params));
+        }
+        let stated = self.stated.filter(|_| params.source != Source::Pixels)?;
+        Some(Ratio { log: stated.ln(), error: ROUNDING })
+    }
+
+    /// Returns the ratio of the exposures that the caller gives.
+    fn given(&self, params: &Params) -> Ratio {
+        let log = (params.exposures[self.long] / params.exposures[self.short]).ln();
+        Ratio { log, error: 0.0 }
+    }
+
     /// Returns the ratio long / short of the exposures. The caller's exposures have precedence; otherwise
     /// `params.source` says whether metadata, pixels or both determine the ratio. Returns an error if they do not state
     /// or show it.
     pub fn ratio(&self, measured: Option<Ratio>, params: &Params) -> Result<Ratio> {
         if !params.exposures.is_empty() {
-            let log = maths::ln(params.exposures[self.long] / params.exposures[self.short]);
-            return Ok(Ratio { log, error: 0.0 });
+            return Ok(self.given(params));
         }
         let stated = self.stated.map(|ratio| Ratio { log: maths::ln(ratio), error: ROUNDING });
         match (params.source, stated, measured) {

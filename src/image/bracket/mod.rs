@@ -2,16 +2,21 @@
 //!
 //! Photos of lit rooms clip at the lamps, whose colours and luminances are then lost. Shorter exposures show the lamps
 //! unclipped. The steps: `exposures` orders the photos; `align` shifts them onto each other; `ratio` measures the
-//! ratios of their exposures, which `exposures` compares with the metadata; `noise` measures by how much neighbouring
-//! exposures differ; `motion` finds the pixels at which they disagree beyond this noise; `combine` averages the
-//! exposures that agree. The result has the pixel grid and the scale of one photo, the reference. Pixels that the
-//! reference shows well keep their values; pixels that it clips get the larger values that shorter exposures show.
+//! ratios of their exposures, which `exposures` compares with the metadata; `comparagram` and `curve` recover the tone
+//! curve of the camera if the exposures are known and the curve is not that of sRGB; `noise` measures by how much
+//! neighbouring exposures differ; `motion` finds the pixels at which they disagree beyond this noise; `combine`
+//! averages the exposures that agree. The result has the pixel grid and the scale of one photo, the reference. Pixels
+//! that the reference shows well keep their values; pixels that it clips get the larger values that shorter exposures
+//! show.
 //!
-//! Not modelled: tone curves other than the sRGB curve (the photos must be linear after loading), rotations and
-//! parallax between the photos, and lens flare, which differs between exposures only if the light does.
+//! Not modelled: tone curves other than that of sRGB if the exposures are unknown, and curves that differ between
+//! channels or photos; rotations and parallax between the photos; and lens flare, which differs between exposures only
+//! if the light does.
 
 mod align;
 mod combine;
+mod comparagram;
+mod curve;
 mod exposures;
 mod frame;
 mod motion;
@@ -20,8 +25,10 @@ mod params;
 mod ratio;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_curve;
 
-pub use params::{MAX_PHOTOS, Params, PhotoReport, Report, Source};
+pub use params::{CURVE_VALUES, CurveReport, MAX_PHOTOS, Params, PhotoReport, Report, Source, ToneCurve};
 
 use crate::error::{Error, Result};
 use crate::exec;
@@ -30,6 +37,7 @@ use crate::image::photo::PhotoMetadata;
 use crate::job::Job;
 use crate::maths;
 use combine::{Exposed, Stack};
+use curve::{PairEvidence, RecoveredCurve};
 use exposures::ExposurePair;
 use frame::Frame;
 use noise::Noise;
@@ -58,7 +66,16 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
     for (frame, shift) in frames.iter_mut().zip(&shifts) {
         frame.shift = [0, 1].map(|axis| shift[axis] - shifts[reference][axis]);
     }
-    let (ratios, disagreements) = compare(&frames, metadata, &order, params, job.part(0.3, 0.8))?;
+    let (curve, contradicts_srgb) = tone_curve(&frames, metadata, &order, params, job.part(0.3, 0.35))?;
+    let linear = match &curve {
+        Some(curve) => linearised(&frames, curve, job.part(0.35, 0.4))?,
+        None => Vec::new(),
+    };
+    for (frame, image) in frames.iter_mut().zip(&linear) {
+        let clip = curve.as_ref().map_or(frame.clip, |curve| curve.light(frame.clip));
+        *frame = Frame { image, clip, ..*frame };
+    }
+    let (ratios, disagreements) = compare(&frames, metadata, &order, params, job.part(0.4, 0.8))?;
     let relative = exposures::chain(&order, &ratios, reference);
     if let Some(k) = relative.iter().position(|ratio| !(ratio.log.abs() <= MAX_LOG_RATIO)) {
         return Err(Error::argument(format!(
@@ -82,7 +99,54 @@ pub fn merge(photos: &[&Image], metadata: &[PhotoMetadata], params: &Params, job
     };
     let photos = (0..photos.len()).map(photo).collect();
     let (clipped, moved) = (merged.clipped as f64 / pixels, merged.moved as f64 / pixels);
-    Ok((merged.image, Report { reference, photos, clipped, moved }))
+    let curve = curve.as_ref().map(RecoveredCurve::report);
+    Ok((merged.image, Report { reference, photos, clipped, moved, curve, contradicts_srgb }))
+}
+
+/// Recovers the tone curve of the photos, which are aligned. `None` if the settings say that it is that of sRGB, if no
+/// two neighbours have known exposures, if a photo has a high dynamic range, or if the photos do not show another
+/// curve. Without a curve, also returns whether the photos contradict that of sRGB.
+fn tone_curve(
+    frames: &[Frame],
+    metadata: &[PhotoMetadata],
+    order: &[usize],
+    params: &Params,
+    job: Job,
+) -> Result<(Option<RecoveredCurve>, bool)> {
+    if frames.iter().any(|frame| frame.clip.is_infinite()) {
+        return Ok((None, false));
+    }
+    let size = [frames[0].image.width, frames[0].image.height];
+    let (mut known, mut all) = (Vec::new(), Vec::new());
+    for neighbours in order.windows(2) {
+        let [s, l] = [neighbours[0], neighbours[1]];
+        let pair = ExposurePair { short: s, long: l, stated: exposures::stated_ratio(&metadata[s], &metadata[l]) };
+        let levels = comparagram::levels(&frames[s], &frames[l], size, job)?;
+        if let Some(ratio) = pair.known(params) {
+            known.push(PairEvidence { log_ratio: [ratio.log, ratio.error], levels: levels.clone() });
+        }
+        all.push(levels);
+    }
+    let curve = if params.tone_curve == ToneCurve::Recovered { curve::recover(&known) } else { None };
+    let contradicts_srgb = curve.is_none() && curve::contradicts_srgb(all);
+    Ok((curve, contradicts_srgb))
+}
+
+/// Returns the photos with their tone curve undone; alpha stays.
+fn linearised(frames: &[Frame], curve: &RecoveredCurve, job: Job) -> Result<Vec<Image>> {
+    let step = 1.0 / frames.len() as f64;
+    let linear = |(k, frame): (usize, &Frame)| {
+        let (image, part) = (frame.image, job.part(k as f64 * step, ((k + 1) as f64 * step).min(1.0)));
+        let mut linear = Image::new(image.width, image.height, image.channels)?;
+        exec::for_rows(&mut linear.data, image.row_len(), part, |y, row| {
+            row.copy_from_slice(image.row(y));
+            for pixel in row.chunks_exact_mut(image.channels) {
+                pixel.iter_mut().take(3).for_each(|v| *v = curve.light(*v));
+            }
+        })?;
+        Ok(linear)
+    };
+    frames.iter().enumerate().map(linear).collect()
 }
 
 /// Checks settings and photos.

@@ -14,6 +14,15 @@ pub enum Source {
     Pixels,
 }
 
+/// The tone curve with which the photos were taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ToneCurve {
+    /// The curve of sRGB, unless the photos show another one significantly better and their exposures are known.
+    Recovered,
+    /// The curve of sRGB: the photos are linear.
+    Srgb,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
     pub source: Source,
@@ -29,6 +38,7 @@ pub struct Params {
     pub max_shift: f64,
     /// Smallest value at which a channel counts as clipped, in `[0.1, 1]`.
     pub saturation: f64,
+    pub tone_curve: ToneCurve,
 }
 
 impl Default for Params {
@@ -40,6 +50,7 @@ impl Default for Params {
             keep_moving: false,
             max_shift: 0.03,
             saturation: 0.95,
+            tone_curve: ToneCurve::Recovered,
         }
     }
 }
@@ -83,6 +94,23 @@ pub struct Report {
     pub clipped: f64,
     /// Share of the pixels at which the exposures disagree, in `[0, 1]`; 0 with `keep_moving`.
     pub moved: f64,
+    /// The tone curve that was recovered and undone; `None` if the photos were taken as linear.
+    pub curve: Option<CurveReport>,
+    /// Whether the photos contradict the tone curve of sRGB, and no other curve was recovered.
+    pub contradicts_srgb: bool,
+}
+
+/// Number of values of [`CurveReport::light`].
+pub const CURVE_VALUES: usize = 17;
+
+/// A recovered tone curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurveReport {
+    /// Light of the sRGB codes 0, 1/16, … 1, relative to white.
+    pub light: [f64; CURVE_VALUES],
+    /// Largest standard error of the light relative to white, as a share of the light, over the codes that the photos
+    /// show.
+    pub error: f64,
 }
 
 /// The report about one photo of a merge.

@@ -2,6 +2,7 @@ mod extremes;
 mod groups;
 mod importance;
 mod least_squares;
+mod several;
 
 use super::*;
 use crate::error::ErrorKind;

@@ -21,7 +21,7 @@ mod place;
 mod tests;
 
 pub use candidates::{Candidate, Kind, candidates};
-pub use place::{Placed, cover, place};
+pub use place::{Placed, cover, place, place_all};
 
 use super::Scene;
 use crate::error::{Error, Result};

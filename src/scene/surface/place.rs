@@ -2,7 +2,7 @@
 
 use super::{Surface, check_triangles};
 use crate::error::{Error, Result};
-use crate::image::Image;
+use crate::image::{Image, try_collect};
 use crate::scene::{Material, Mesh, Scene, Texture, TextureRef, Wrap};
 use glam::{Vec2, Vec3, Vec4};
 
@@ -29,6 +29,54 @@ pub struct Placed {
 /// - the texture is empty, does not have 1, 3 or 4 channels, or holds a negative or non-finite value;
 /// - `strength` is negative or not finite.
 pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec3) -> Result<Placed> {
+    let placed = place_all(scene, vec![(surface, texture, strength)])?;
+    placed.first().copied().ok_or_else(|| Error::argument("surface has no triangles with an area; find it again"))
+}
+
+/// Like [`place`], for several surfaces of one scene, each with its texture and strength. The result is in the order of
+/// the surfaces.
+///
+/// Errors: those of [`place`]; `InvalidArgument` if two surfaces share a triangle. The scene is then unchanged.
+pub fn place_all(scene: &mut Scene, lights: Vec<(&Surface, Image, Vec3)>) -> Result<Vec<Placed>> {
+    for (surface, texture, strength) in &lights {
+        check_light(scene, surface, texture, *strength)?;
+    }
+    let of_surface = lights.iter().enumerate().flat_map(|(k, light)| light.0.triangles.iter().map(move |t| (*t, k)));
+    let mut leaving: Vec<((usize, usize), usize)> = try_collect(of_surface)?;
+    leaving.sort_unstable();
+    leaving.dedup();
+    if let Some(pair) = leaving.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+        let ((mesh, triangle), first) = pair[0];
+        let message = format!("surfaces {first} and {} share triangle {triangle} of mesh {mesh}", pair[1].1);
+        return Err(Error::argument(message));
+    }
+    let leaving: Vec<(usize, usize)> = try_collect(leaving.iter().map(|(triangle, _)| *triangle))?;
+    let mut patches = Vec::with_capacity(lights.len());
+    for (surface, ..) in &lights {
+        patches.push((main_source(scene, surface)?, patch_of(scene, surface)));
+    }
+
+    let mut placed = Vec::with_capacity(lights.len());
+    for ((_, texture, strength), (source, mut patch)) in lights.into_iter().zip(patches) {
+        let original = scene.meshes[source].material;
+        scene.textures.push(Texture { name: "Lights".into(), image: texture, wrap: [Wrap::Clamp; 2] });
+        scene.materials.push(Material {
+            name: format!("{} (lights)", scene.materials[original].name),
+            emission: strength,
+            emission_texture: Some(TextureRef { uv_set: 1, ..TextureRef::new(scene.textures.len() - 1) }),
+            double_sided: false,
+            ..scene.materials[original].clone()
+        });
+        patch.name = format!("{} (lights)", scene.meshes[source].name);
+        patch.material = scene.materials.len() - 1;
+        scene.meshes.push(patch);
+        placed.push(Placed { mesh: scene.meshes.len() - 1, material: scene.materials.len() - 1 });
+    }
+    remove(scene, &leaving);
+    Ok(placed)
+}
+
+fn check_light(scene: &Scene, surface: &Surface, texture: &Image, strength: Vec3) -> Result<()> {
     check_triangles(scene, &surface.triangles)?;
     if !strength.is_finite() || strength.min_element() < 0.0 {
         return Err(Error::argument(format!("strength is {strength}; it must be finite and not negative")));
@@ -39,26 +87,10 @@ pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec
     if let Some(v) = texture.data.iter().find(|v| !v.is_finite() || **v < 0.0) {
         return Err(Error::argument(format!("texture holds {v}; light must be finite and not negative")));
     }
-
     if surface.size.is_nan() || surface.size.min_element() <= 0.0 {
         return Err(Error::argument(format!("surface.size is {}; both sides must be positive", surface.size)));
     }
-
-    let source = main_source(scene, surface)?;
-    let (name, original) = (scene.meshes[source].name.clone(), scene.meshes[source].material);
-    let mut patch = split_off(scene, surface);
-    scene.textures.push(Texture { name: "Lights".into(), image: texture, wrap: [Wrap::Clamp; 2] });
-    scene.materials.push(Material {
-        name: format!("{} (lights)", scene.materials[original].name),
-        emission: strength,
-        emission_texture: Some(TextureRef { uv_set: 1, ..TextureRef::new(scene.textures.len() - 1) }),
-        double_sided: false,
-        ..scene.materials[original].clone()
-    });
-    patch.name = format!("{name} (lights)");
-    patch.material = scene.materials.len() - 1;
-    scene.meshes.push(patch);
-    Ok(Placed { mesh: scene.meshes.len() - 1, material: scene.materials.len() - 1 })
+    Ok(())
 }
 
 /// Returns the mesh that holds the largest share of the surface's area.
@@ -72,8 +104,8 @@ fn main_source(scene: &Scene, surface: &Surface) -> Result<usize> {
     if area > 0.0 { Ok(mesh) } else { Err(Error::argument("surface has no triangles with an area; find it again")) }
 }
 
-/// Moves the surface's triangles out of their meshes into a new, flat-shaded mesh, and returns that mesh.
-fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
+/// Returns a flat-shaded mesh of the surface's triangles.
+fn patch_of(scene: &Scene, surface: &Surface) -> Mesh {
     let mut patch = Mesh::default();
     let has_uv = surface.triangles.iter().any(|&(mesh, _)| !scene.meshes[mesh].uvs[0].is_empty());
     let has_colours = surface.triangles.iter().any(|&(mesh, _)| !scene.meshes[mesh].colours.is_empty());
@@ -100,11 +132,11 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
             }
         }
     }
-    // Remove the triangles from the meshes they came from.
-    let mut leaving = surface.triangles.clone();
-    leaving.sort_unstable();
-    leaving.dedup();
-    let mut rest = leaving.as_slice();
+    patch
+}
+
+/// Removes triangles, given in ascending order, from their meshes.
+fn remove(scene: &mut Scene, mut rest: &[(usize, usize)]) {
     while let Some(&(mesh, _)) = rest.first() {
         let (here, after) = rest.split_at(rest.partition_point(|t| t.0 == mesh));
         let mut index = 0;
@@ -115,7 +147,6 @@ fn split_off(scene: &mut Scene, surface: &Surface) -> Mesh {
         });
         rest = after;
     }
-    patch
 }
 
 /// Adds a horizontal sheet on top of the scene's bounding box, for models without a ceiling. The sheet is diffuse with

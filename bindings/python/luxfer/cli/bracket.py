@@ -46,16 +46,26 @@ def facts(report: MergeReport) -> dict[str, Any]:
         "shifts": [list(shift) for shift in zip(report.shift_x, report.shift_y)],
         "clipped": report.clipped,
         "moved": report.moved,
+        "tone_curve": "recovered" if _is_recovered(report) else "srgb",
+        "tone_curve_error": report.tone_curve_error,
+        "contradicts_srgb": bool(report.contradicts_srgb),
     }
 
 
 def words(report: MergeReport) -> str:
     """Describes the merge in a line."""
     others = ", ".join(f"{1 / e:.3g}" if e < 1 else f"1/{e:.3g}" for e in report.exposures[1:])
+    curve = f"; tone curve recovered within {percent(report.tone_curve_error)}" if _is_recovered(report) else ""
     return (
         f"photo merged with exposures shorter by {others}; {percent(report.clipped)} of it still clipped, "
-        f"{percent(report.moved)} moved"
+        f"{percent(report.moved)} moved{curve}"
     )
+
+
+def _is_recovered(report: MergeReport) -> bool:
+    from ..types import ToneCurve
+
+    return report.tone_curve == ToneCurve.RECOVERED
 
 
 def doubts(report: MergeReport) -> list[dict[str, Any]]:
@@ -67,4 +77,7 @@ def doubts(report: MergeReport) -> list[dict[str, Any]]:
     if report.moved > MANY_MOVED:
         message = f"the exposures disagree on {percent(report.moved)} of the pixels"
         out.append(doubt("exposures", "moved", message, "use photos from a tripod, developed with the same settings"))
+    if report.contradicts_srgb:
+        message = "the exposures contradict the tone curve of sRGB, so the light of the lamps is off"
+        out.append(doubt("exposures", "tone-curve", message, "use files that state their exposure times"))
     return out
