@@ -153,7 +153,7 @@ pub fn find_common(room: &RoomView, planes: &[PlaneEvidence], size: [usize; 2], 
 
 /// Cost of the distance of one side, by the prior.
 fn prior_cost(side: f64) -> f64 {
-    PRIOR_COST * (side / PRIOR_SIDE).ln().powi(2)
+    PRIOR_COST * maths::powi(maths::ln(side / PRIOR_SIDE), 2)
 }
 
 /// Returns rays over the whole photo, in room axes.

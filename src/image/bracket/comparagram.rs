@@ -12,6 +12,7 @@ use crate::exec;
 use crate::image::colour::linear_to_srgb;
 use crate::image::try_push;
 use crate::job::Job;
+use crate::maths;
 
 /// Approximate maximum number of pixels that are read; larger photos are read at an even lattice of pixels.
 const MAX_PIXELS: usize = 1 << 18;
@@ -74,7 +75,7 @@ fn level_of(values: &[[f32; 2]]) -> Option<LevelPair> {
     if values.len() < MIN_VALUES {
         return None;
     }
-    let ratio = |[s, l]: &[f32; 2]| (l / s).ln();
+    let ratio = |[s, l]: &[f32; 2]| maths::ln(l / s);
     let middle = median(values.iter().map(ratio).collect());
     let spread = median(values.iter().map(|v| (ratio(v) - middle).abs()).collect());
     let limit = OUTLIER * (MAD_TO_SIGMA as f32 * spread).max(MIN_SPREAD);
@@ -82,10 +83,10 @@ fn level_of(values: &[[f32; 2]]) -> Option<LevelPair> {
     for value in values.iter().filter(|v| (ratio(v) - middle).abs() <= limit) {
         count += 1.0;
         sums = [sums[0] + f64::from(value[0]), sums[1] + f64::from(value[1])];
-        squares += f64::from(ratio(value) - middle).powi(2);
+        squares += maths::powi(f64::from(ratio(value) - middle), 2);
     }
     let [short, long] = sums.map(|sum| sum / count);
-    let rounding = [short, long].map(|v| (ROUNDING * slope(v)).powi(2));
+    let rounding = [short, long].map(|v| maths::powi(ROUNDING * slope(v), 2));
     Some(LevelPair { short, long, variance: squares / (count * count) + rounding[0] + rounding[1] })
 }
 

@@ -17,6 +17,7 @@
 use super::comparagram::LevelPair;
 use super::params::{CURVE_VALUES, CurveReport};
 use crate::image::colour::{linear_to_srgb, srgb_to_linear};
+use crate::maths;
 
 /// Number of basis functions: the logarithm, and Chebyshev polynomials of the orders 1 to 5. Cameras' curves need about
 /// this many for 1 % (Grossberg and Nayar 2003: five components explain 99.9 % of the variance of 201 curves).
@@ -80,7 +81,7 @@ fn basis(code: f64) -> [f64; TERMS] {
     for k in 2..TERMS {
         chebyshev[k] = 2.0 * t * chebyshev[k - 1] - chebyshev[k - 2];
     }
-    chebyshev[0] = f64::from(srgb_to_linear(code as f32)).max(f64::MIN_POSITIVE).ln();
+    chebyshev[0] = maths::ln(f64::from(srgb_to_linear(code as f32)).max(f64::MIN_POSITIVE));
     chebyshev
 }
 
@@ -124,7 +125,7 @@ pub fn recover(pairs: &[PairEvidence]) -> Option<RecoveredCurve> {
         // The last basis function shows how much those that are left out may change.
         let last = slopes[TERMS - 1] * coefficients[TERMS - 1]
             + (0..TERMS - 1).map(|k| slopes[k] * (coefficients[k] - shorter.solution[k])).sum::<f64>();
-        let error = (scale * variance.max(0.0)).sqrt().hypot(last);
+        let error = maths::hypot((scale * variance.max(0.0)).sqrt(), last);
         let change = curve.correction(code).abs();
         is_significant |= change > MIN_CHANGE && change > SIGNIFICANT * error;
         curve.error = curve.error.max(error);
@@ -147,7 +148,7 @@ pub fn contradicts_srgb(levels: Vec<Vec<LevelPair>>) -> bool {
     let (Some(curved), Some(plain)) = (Fit::new(&used, TERMS), Fit::new(&used, 0)) else { return false };
     let scale = (curved.squares / (count - unknowns) as f64).max(1.0);
     let deviation = |(pair, log): (&&PairEvidence, &f64)| -> f64 {
-        pair.levels.iter().map(|level| ((level.long / level.short).ln() - log).powi(2)).sum()
+        pair.levels.iter().map(|level| maths::powi(maths::ln(level.long / level.short) - log, 2)).sum()
     };
     let squares: f64 = used.iter().zip(&plain.solution).map(deviation).sum();
     let is_better = plain.squares - curved.squares > MIN_F * TERMS as f64 * scale;
@@ -168,7 +169,7 @@ impl RecoveredCurve {
 
     /// Whether the light rises with the value, over the whole range.
     fn rises(&self) -> bool {
-        let log = |code: f64| f64::from(srgb_to_linear(code as f32)).ln();
+        let log = |code: f64| maths::ln(f64::from(srgb_to_linear(code as f32)));
         let at = |step: usize| self.range[0] + (self.range[1] - self.range[0]) * step as f64 / STEPS as f64;
         (0..STEPS).all(|step| {
             let (a, b) = (at(step), at(step + 1));
@@ -179,8 +180,8 @@ impl RecoveredCurve {
 
     fn tabulated(self) -> Self {
         let factor = |step: usize| {
-            let light = (step as f64 / STEPS as f64).powi(2);
-            self.correction(code_of(light)).exp() as f32
+            let light = maths::powi(step as f64 / STEPS as f64, 2);
+            maths::exp(self.correction(code_of(light))) as f32
         };
         Self { factors: (0..=STEPS).map(factor).collect(), ..self }
     }
@@ -210,13 +211,13 @@ impl Fit {
         let mut rows: Vec<(Vec<f64>, f64)> = Vec::new();
         for (j, pair) in pairs.iter().enumerate() {
             for level in &pair.levels {
-                let weight = level.variance.powf(-0.5);
+                let weight = level.variance.sqrt().recip();
                 let mut row = vec![0.0; size];
                 let slopes = difference(basis(code_of(level.long)), basis(code_of(level.short)));
                 row[..terms].copy_from_slice(&slopes[..terms]);
                 row[terms + j] = -1.0;
                 row.iter_mut().for_each(|v| *v *= weight);
-                rows.push((row, (level.short / level.long).ln() * weight));
+                rows.push((row, maths::ln(level.short / level.long) * weight));
             }
             let [log, error] = pair.log_ratio;
             let mut row = vec![0.0; size];
@@ -225,7 +226,7 @@ impl Fit {
         }
         let mut normal = vec![vec![0.0; size]; size];
         let mut right = vec![0.0; size];
-        (0..terms).for_each(|k| normal[k][k] = PRIOR.powi(-2));
+        (0..terms).for_each(|k| normal[k][k] = PRIOR.recip() * PRIOR.recip());
         for (row, value) in &rows {
             for i in 0..size {
                 right[i] += row[i] * value;
@@ -237,7 +238,7 @@ impl Fit {
             covariance.iter().map(|row| row.iter().zip(&right).map(|(a, b)| a * b).sum()).collect();
         let residual = |(row, value): &(Vec<f64>, f64)| {
             let fitted: f64 = row.iter().zip(&solution).map(|(a, x)| a * x).sum();
-            (fitted - value).powi(2)
+            maths::powi(fitted - value, 2)
         };
         let squares: f64 = rows.iter().map(residual).sum();
         squares.is_finite().then_some(Self { solution, covariance, squares })

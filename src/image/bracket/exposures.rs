@@ -76,12 +76,12 @@ impl ExposurePair {
             return Some(self.given(params));
         }
         let stated = self.stated.filter(|_| params.source != Source::Pixels)?;
-        Some(Ratio { log: stated.ln(), error: ROUNDING })
+        Some(Ratio { log: maths::ln(stated), error: ROUNDING })
     }
 
     /// Returns the ratio of the exposures that the caller gives.
     fn given(&self, params: &Params) -> Ratio {
-        let log = (params.exposures[self.long] / params.exposures[self.short]).ln();
+        let log = maths::ln(params.exposures[self.long] / params.exposures[self.short]);
         Ratio { log, error: 0.0 }
     }
 
