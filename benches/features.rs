@@ -18,6 +18,7 @@ use luxfer::rectify;
 use luxfer::rng::Rng;
 use luxfer::segment::{StrokeSet, strokes};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 const SIZE: [usize; 2] = [1152, 868];
 /// Numbers of neighbours for Open3D: its usual number, and a larger one. With noise, its accuracy rises with the
@@ -218,7 +219,7 @@ fn pairs() -> Vec<Case> {
 }
 
 impl Case {
-    fn features(&self, params: &Params) -> Image {
+    fn features(&self, params: &Params) -> Arc<Image> {
         let room = RoomView { perspective: &self.camera, segments: &[], strokes: &[], layout: None };
         let depth = DepthMap { image: &self.depth, kind: DepthKind::AlongZ };
         let input = Input { photo: &self.photo, depth: Some(depth), room: Some(room) };

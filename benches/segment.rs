@@ -18,6 +18,7 @@ use luxfer::rectify;
 use luxfer::rng::Rng;
 use luxfer::segment::{self, Input, Params, Segmentation, Stroke, strokes};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 const SIZE: [usize; 2] = [1152, 868];
 const PEERS: [&str; 3] = ["grabcut", "rf", "svm"];
@@ -27,7 +28,7 @@ const ROUNDS: usize = 5;
 struct Case {
     name: String,
     photo: Image,
-    features: Image,
+    features: Arc<Image>,
     strokes: Vec<Stroke>,
     /// For a mask of lights: the strokes of the plane that contains the lights.
     plane: Option<Vec<Stroke>>,

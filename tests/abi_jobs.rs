@@ -248,10 +248,6 @@ fn several_transfers_are_checked_before_their_job_starts() {
         let status = luxfer_transfer_start_all(context, both.as_ptr(), 2, 1, 1, settings.as_ptr(), &mut job);
         refused(status, LUXFER_INVALID_ARGUMENT, "transfers[1]: target is 9");
         let all = [first, second];
-        assert_eq!(
-            luxfer_transfer_start_all(null_mut(), all.as_ptr(), 2, 1, 1, null(), &mut job),
-            LUXFER_INVALID_ARGUMENT
-        );
         refused(
             luxfer_transfer_start_all(context, null(), 2, 1, 1, null(), &mut job),
             LUXFER_INVALID_ARGUMENT,
