@@ -728,8 +728,9 @@ typedef struct luxfer_merge_report {
      */
     uint32_t contradicts_srgb;
     /**
-     * Largest error of the recovered curve: of the light at a code, relative to white, as a share of this
-     * light, over the codes that the photos show. 0 without a recovered curve.
+     * Largest error of the recovered curve, as a share of the light, over the codes that two photos show: of the light
+     * at a code, relative to the light at the brightest of these codes. For brighter codes, which one photo shows at
+     * most, the curve of sRGB is assumed. 0 without a recovered curve.
      */
     double tone_curve_error;
     /**

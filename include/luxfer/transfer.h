@@ -348,10 +348,11 @@ luxfer_status luxfer_transfer_start(luxfer_transfer *transfer,
  * luxfer_rectify_params). Sloped planes are not unwarped. For a sloped plane, make the texture by luxfer_image_warp
  * and a luxfer_emission, and set it by luxfer_transfer_set_texture; the transfer then needs only its masks.
  *
- * As luxfer_transfer_start; also LUXFER_INVALID_ARGUMENT if photos or scenes differ, if two transfers are one, or if
- * white_luminance or the settings of RELIGHT differ; the job ends with it if two transfers light one triangle of the
- * scene. LUXFER_INVALID_OPERATION if RELIGHT runs without EMISSION on transfers whose textures were not placed by one
- * job. The message names the transfer by its index.
+ * As luxfer_transfer_start; also LUXFER_INVALID_ARGUMENT if photos or scenes differ, if two transfers are one, if
+ * white_luminance or the settings of RELIGHT differ, or if several transfers ask for LUXFER_FIT_LEAST_SQUARES; the job
+ * ends with it if two transfers light one triangle of the scene. LUXFER_INVALID_OPERATION if RELIGHT runs without
+ * EMISSION on transfers whose textures were not placed by one job, or on some of the transfers of that job only, also
+ * by luxfer_transfer_start. The message names the transfer by its index.
  */
 luxfer_status luxfer_transfer_start_all(luxfer_context *context,
                                         luxfer_transfer *const *transfers,

@@ -60,7 +60,7 @@ pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, j
 }
 
 impl Unwarped {
-    /// The mask `valid`, joined with the unwarped `mask`, a mask of the photo.
+    /// The union of `valid` and of `mask`, a mask of the photo, unwarped. A pixel of `mask` that is NaN marks nothing.
     pub fn valid_with(&self, mask: &Image, job: Job) -> Result<Image> {
         let Image { width, height, .. } = self.valid;
         let mut valid = resample::warp_photo(&mask.channel(0)?, &self.to_photo, width, height, job)?;

@@ -173,34 +173,20 @@ impl Coupled<'_> {
         Ok(scales)
     }
 
-    /// Solves one channel. Only the targets of emitters with a free scale count. If they cannot all be met with scales
-    /// ≥ 0, the emitters whose scale is 0 stay off, the target that is exceeded most is left out, and the others are
-    /// solved for again.
+    /// Solves one channel for the scales that are free. Only the targets of their emitters count.
     fn channel(&self, means: &MeanLight, fixed: &Fixed, c: usize) -> Result<Vec<f64>> {
-        let mut emitters: Vec<usize> = (0..self.planes.len()).filter(|&j| fixed[j][c].is_none()).collect();
-        let mut targets = emitters.clone();
+        let free: Vec<usize> = (0..self.planes.len()).filter(|&j| fixed[j][c].is_none()).collect();
         let mut scales: Vec<f64> = fixed.iter().map(|fixed| fixed[c].unwrap_or(0.0)).collect();
-        let given = scales.clone();
-        let missing = |i: usize| {
-            let light: f64 = means.responses[i].iter().zip(&given).map(|(r, x)| r[c] * x).sum();
+        let missing = |&i: &usize| {
+            let light: f64 = means.responses[i].iter().zip(&scales).map(|(r, x)| r[c] * x).sum();
             f64::from(self.planes[i].target[c]) - means.background[i][c] - light
         };
-        loop {
-            let row = |i: usize| emitters.iter().map(move |&j| means.responses[i][j][c]);
-            let matrix: Vec<f64> = targets.iter().flat_map(|&i| row(i)).collect();
-            let right: Vec<f64> = targets.iter().map(|&i| missing(i)).collect();
-            let solved = least_squares(&matrix, &right, emitters.len())?;
-            emitters.iter().zip(&solved).for_each(|(&j, scale)| scales[j] = *scale);
-            let over = |k: usize| -> f64 { row(targets[k]).zip(&solved).map(|(r, x)| r * x).sum::<f64>() - right[k] };
-            let most = (0..targets.len()).max_by(|&a, &b| over(a).total_cmp(&over(b)));
-            let Some(most) = most.filter(|_| solved.contains(&0.0) && targets.len() > 1) else { return Ok(scales) };
-            let brightest = over(most);
-            if brightest <= 0.0 {
-                return Ok(scales);
-            }
-            targets.remove(most);
-            emitters.retain(|&j| scales[j] > 0.0);
-        }
+        let missing: Vec<f64> = free.iter().map(missing).collect();
+        let row = |&i: &usize| free.iter().map(|&j| means.responses[i][j][c]).collect();
+        let rows: Vec<Vec<f64>> = free.iter().map(row).collect();
+        let solved = meet(&rows, &missing)?;
+        free.iter().zip(solved).for_each(|(&j, scale)| scales[j] = scale);
+        Ok(scales)
     }
 
     /// Returns whether the scales meet a target in one channel, within the tolerance of [`GroupParams`] and the
@@ -261,6 +247,34 @@ impl Coupled<'_> {
     }
 }
 
+/// Returns the scales ≥ 0 with which the emitters meet the targets. `rows[i][j]` is the response of target `i` to
+/// emitter `j`, and `missing[i]` the light that target `i` lacks. If not all targets can be met, the emitters whose
+/// scale is 0 stay off, the target that is exceeded most is left out, and the others are solved for again.
+fn meet(rows: &[Vec<f64>], missing: &[f64]) -> Result<Vec<f64>> {
+    let mut emitters: Vec<usize> = (0..rows.len()).collect();
+    let mut targets = emitters.clone();
+    let mut scales = vec![0.0; rows.len()];
+    loop {
+        let row = |i: usize| emitters.iter().map(move |&j| rows[i][j]);
+        let matrix: Vec<f64> = targets.iter().flat_map(|&i| row(i)).collect();
+        let right: Vec<f64> = targets.iter().map(|&i| missing[i]).collect();
+        let solved = least_squares(&matrix, &right, emitters.len())?;
+        emitters.iter().zip(&solved).for_each(|(&j, scale)| scales[j] = *scale);
+        let over = |k: usize| -> f64 { row(targets[k]).zip(&solved).map(|(r, x)| r * x).sum::<f64>() - right[k] };
+        let most = (0..targets.len()).max_by(|&a, &b| over(a).total_cmp(&over(b)));
+        // With an emitter that is off now, or was before, the targets need not all be met.
+        let is_short = solved.contains(&0.0) || targets.len() > emitters.len();
+        let Some(most) = most.filter(|&most| is_short && targets.len() > 1 && over(most) > 0.0) else {
+            return Ok(scales);
+        };
+        targets.remove(most);
+        emitters.retain(|&j| scales[j] > 0.0);
+        if emitters.is_empty() {
+            return Ok(scales);
+        }
+    }
+}
+
 /// Returns the `count` scales ≥ 0 that minimise the squared residuals of the rows of a matrix; all 0 if nothing
 /// responds.
 fn least_squares(matrix: &[f64], right: &[f64], count: usize) -> Result<Vec<f64>> {
@@ -272,4 +286,22 @@ fn least_squares(matrix: &[f64], right: &[f64], count: usize) -> Result<Vec<f64>
     let equal = (dot(&together, right) / dot(&together, &together)).max(0.0);
     let (preferred, upper) = (vec![equal; count], vec![f64::INFINITY; count]);
     BoundedLeastSquares { matrix, right, regularisation: lambda, preferred: &preferred, upper: &upper }.solve()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The third target is so bright that its light alone exceeds the first two. It is met, and the first two emitters
+    /// are off.
+    #[test]
+    fn a_target_is_met_although_two_others_are_exceeded() {
+        let rows = [vec![1.0, 0.1, 0.5], vec![0.1, 1.0, 0.5], vec![0.3, 0.3, 1.0]];
+        let scales = meet(&rows, &[10.0, 10.0, 100.0]).unwrap();
+        assert_eq!(scales[..2], [0.0, 0.0]);
+        assert!((scales[2] - 100.0).abs() < 1e-4, "{scales:?}");
+        // If other light exceeds all targets, all emitters are off.
+        assert_eq!(meet(&rows, &[-1.0, -2.0, -3.0]).unwrap(), [0.0; 3]);
+        assert!(meet(&[], &[]).unwrap().is_empty());
+    }
 }

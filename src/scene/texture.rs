@@ -29,7 +29,7 @@ impl Texture {
     pub fn sample(&self, uv: Vec2) -> Vec4 {
         let ([x0, x1], tx) = neighbours(uv.x, self.image.width, self.wrap[0]);
         let ([y0, y1], ty) = neighbours(uv.y, self.image.height, self.wrap[1]);
-        // `Vec4::lerp` fuses the multiplication and the addition on ARM.
+        // Written out, so that no platform's vector code fuses the multiplication and the addition.
         let between = |a: Vec4, b: Vec4, t: f32| a + (b - a) * t;
         let top = between(self.texel(x0, y0), self.texel(x1, y0), tx);
         let bottom = between(self.texel(x0, y1), self.texel(x1, y1), tx);

@@ -8,12 +8,16 @@ use crate::job::Job;
 /// unwarping interpolates between two pixels. [convention]
 const RIM: f32 = 3.0;
 
-/// Mask of the lamps and their rims: the finite pixels of `lights`, and the pixels close to them that are at least as
-/// bright as the median pixel of the plane. A rim belongs to the plane even if the mask of the plane leaves it out.
-/// Without the rim, the lamp would count as partly hidden. An object that hides a part of a lamp is darker than the
-/// plane, or brighter far beyond the rim. `plane`, `lights` and `photo` have equal sizes. The result is empty if the
-/// plane shows no pixel beside lamps.
+/// Mask of the lamps and their rims: the pixels of `lights`, and the pixels close to them that are at least as bright
+/// as the median of the plane without its lamps. A rim belongs to the plane even if the mask of the plane leaves it
+/// out. Without the rim, the lamp would count as partly hidden. An object that hides a part of a lamp is darker than
+/// the plane, or brighter far beyond the rim. Pixels at which the photo is not finite are NaN, so that resampling
+/// spreads no validity from them. If the plane shows no pixel beside lamps, no pixel is marked.
+///
+/// Errors: masks of another size than the photo.
 pub fn lamp_rims(plane: &Image, lights: &Image, photo: &Image, job: Job) -> Result<Image> {
+    photo.check_same_size("the photo", plane, "the mask of the plane")?;
+    photo.check_same_size("the photo", lights, "the mask of the lights")?;
     let luminance = |i: usize| colour::luminance(photo.rgb(i % photo.width, i / photo.width));
     let is_plain = |i: &usize| plane.data[*i] > 0.5 && lights.data[*i] <= 0.5;
     let mut plain = try_collect((0..plane.data.len()).filter(is_plain).map(luminance).filter(|l| l.is_finite()))?;
@@ -24,9 +28,11 @@ pub fn lamp_rims(plane: &Image, lights: &Image, photo: &Image, job: Job) -> Resu
     let (_, median, _) = plain.select_nth_unstable_by(middle, f32::total_cmp);
     let mut rims = dilate(lights, RIM, job)?;
     for (i, rim) in rims.data.iter_mut().enumerate() {
-        let is_bright = lights.data[i] > 0.5 || luminance(i) >= *median;
-        if !(is_bright && luminance(i).is_finite()) {
-            *rim = 0.0;
+        let luminance = luminance(i);
+        match () {
+            () if !luminance.is_finite() => *rim = f32::NAN,
+            () if lights.data[i] <= 0.5 && luminance < *median => *rim = 0.0,
+            () => {}
         }
     }
     Ok(rims)
@@ -65,6 +71,8 @@ mod tests {
                 assert_eq!(rims.pixel(x, y)[0] > 0.5, expected, "{x}, {y}");
             }
         }
+        let small = Image::new(25, 20, 1).unwrap();
+        assert!(lamp_rims(&plane, &small, &photo, monitor.job()).is_err());
         // Without a plane beside the lamps there is nothing to compare with.
         let none = lamp_rims(&lights, &lights, &photo, monitor.job()).unwrap();
         assert!(none.data.iter().all(|v| *v == 0.0));

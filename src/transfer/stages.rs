@@ -1,6 +1,6 @@
 //! The stages of the transfer. Each stage takes its input from earlier results, runs, and stores its result.
 
-use super::check::need;
+use super::check::{missing, need};
 use super::{LitScene, Results, Transfer, texel_zones};
 use crate::emission::{CameraDistance, Emission, Sizing, TexelGrid};
 use crate::error::{Error, ErrorKind, Result};
@@ -223,7 +223,7 @@ impl Transfer {
                 let rims = segment::lamp_rims(&plane.mask, &lights.mask, photo, job.part(0.08, 0.085))?;
                 unwarped.valid_with(&rims, job.part(0.085, 0.09))?
             }
-            None => unwarped.valid.clone(),
+            None => unwarped.valid.try_clone()?,
         };
         let light = emission::complete_lights(&unwarped.image, light, &shown, unwarped.to_photo, job.part(0.09, 0.1))?;
         let input = emission::Input {
@@ -261,6 +261,9 @@ impl Transfer {
     pub(super) fn relight(&mut self, job: Job) -> Result<()> {
         let target = self.target(job.part(0.0, 0.02))?;
         let unsolved = need(&self.results.unsolved, "run stage Emission")?;
+        if !unsolved.others.is_empty() {
+            return Err(missing("run stage Relight together with the transfers whose textures lie in the same scene"));
+        }
         let world = World::build(unsolved.scene.clone(), job.part(0.02, 0.1))?;
         let triangles = unsolved.triangles();
         let input = relight::Input {

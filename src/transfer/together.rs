@@ -136,6 +136,11 @@ impl Transfer {
             )));
         }
         let solves = (from..=to).contains(&Stage::Relight);
+        if solves && self.params.relight.fit == relight::Fit::LeastSquares {
+            return Err(Error::argument(
+                "fit of relight is LUXFER_FIT_LEAST_SQUARES; several planes are fitted by their means, LUXFER_FIT_MEAN",
+            ));
+        }
         if solves && self.params.relight != other.params.relight {
             return Err(Error::argument("relight differs from that of transfers[0]; all planes are solved together"));
         }
@@ -395,6 +400,12 @@ impl Run<'_> {
             let is_shared = all.first().is_none_or(|(_, first, _)| Arc::ptr_eq(&first.scene, &unsolved.scene));
             if !is_shared {
                 return Err(named(k, missing("run stage Emission of all transfers in one job")));
+            }
+            if unsolved.others.len() + 1 != count {
+                return Err(named(
+                    k,
+                    missing("run stage Relight of the transfers that stage Emission placed in one job"),
+                ));
             }
             all.push((k, unsolved.clone(), target));
         }

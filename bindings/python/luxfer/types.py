@@ -1200,8 +1200,9 @@ class MergeReport:
     are unknown, the levels of the photos determine no curve, or the settings say so: the light of the merged
     image is then wrong by more than noise, and you should state the exposures. 0 otherwise."""
     tone_curve_error: float
-    """Largest error of the recovered curve: of the light at a code, relative to white, as a share of this
-    light, over the codes that the photos show. 0 without a recovered curve."""
+    """Largest error of the recovered curve, as a share of the light, over the codes that two photos show: of
+    the light at a code, relative to the light at the brightest of these codes. For brighter codes, which one
+    photo shows at most, the curve of sRGB is assumed. 0 without a recovered curve."""
     tone_curve_light: tuple[float, ...]
     """Light at the codes 0, 1/16, ... 1 of the photos' files, relative to white: of the recovered curve, or
     else of sRGB."""

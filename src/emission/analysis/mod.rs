@@ -249,7 +249,7 @@ impl Analysis {
             let pitch = exemplar.working.pitch;
             let width = exemplar.working.width;
             let centre = |i: usize| (DVec2::new((i % width) as f64, (i / width) as f64) + 0.5) * pitch;
-            parts.extend(Correlated::new(exemplar, |i| limit.contains(centre(i)), job.part(0.0, 0.0)).ok());
+            parts.push(Correlated::new(exemplar, |i| limit.contains(centre(i)), job.part(0.0, 0.0))?);
         }
         let mut proposals = Vec::new();
         for correlated in std::iter::once(whole).chain(&parts) {

@@ -43,7 +43,7 @@ pub struct LitPlane<'a> {
     pub unwarped: &'a Image,
     /// Confidence of each pixel that it is light, in `[0, 1]`.
     pub light: &'a Image,
-    /// 1 for pixels on the plane, else 0.
+    /// 1 for pixels on the plane, its lamps and their rims, else 0.
     pub valid: &'a Image,
     pub to_photo: Option<PhotoMap>,
 }

@@ -114,7 +114,7 @@ impl Exemplar {
         self.lit_share >= MIN_LUMINOUS_SHARE
     }
 
-    /// Whether the lamps that the photo shows completely have less than half of the light's photo pixels.
+    /// Whether whole lamps ([`Role::is_whole`]) have less than half of the photo pixels that show light.
     pub fn is_mostly_cut(&self) -> bool {
         let of = |is_counted: fn(Role) -> bool| {
             let lights = self.roles.iter().zip(&self.photo_area).filter(|(role, _)| is_counted(**role));

@@ -3,7 +3,7 @@
 //! away, because bloom adds about the same number of photo pixels everywhere. A straight band replaces it. Lines of one
 //! kind get one width, without bloom ([`bloom::common_side`]).
 //!
-//! Whole lamps need none of this, and cut lamps beside whole ones neither: they are drawn from designs
+//! Whole lamps need none of this, and cut lines beside whole lines neither: they are drawn from designs
 //! ([`super::designs`]).
 
 use super::bloom;

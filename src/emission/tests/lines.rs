@@ -94,7 +94,7 @@ fn lines_that_the_border_cuts_at_different_places_have_no_period_along_them() {
     let exemplar = Design::new(200, 190, move |x, y| (y - 5.0).rem_euclid(24.0) < 6.0 && x < ends(y));
     let monitor = Monitor::default();
     let exemplar = Exemplar::new(&exemplar.input(), 200.0, 0.0, monitor.job()).unwrap();
-    let oblique = [DVec2::new(-8.0, 24.0), DVec2::new(29.0, 24.0)];
+    let oblique = [DVec2::new(-12.0, 24.0), DVec2::new(37.0, 24.0)];
     let Law::Lattice([along, across]) = lattice::lattice(&exemplar, oblique) else { panic!("no lattice") };
     assert_eq!((along, across.x), (DVec2::X, 0.0));
     assert!((across.y - 24.0).abs() < 1e-6, "{across}");
@@ -105,4 +105,10 @@ fn lines_that_the_border_cuts_at_different_places_have_no_period_along_them() {
     let periods = [DVec2::new(90.0, 0.0), DVec2::new(0.0, 24.0)];
     let Law::Lattice(found) = lattice::lattice(&battens, periods) else { panic!("no lattice") };
     assert!(found.iter().zip(&periods).all(|(found, period)| (*found - *period).length() < 0.5), "{found:?}");
+
+    // A net of lines is a single light, which overlaps its copy at its true periods.
+    let net = Design::new(240, 220, |x, y| (x - 5.0).rem_euclid(40.0) < 6.0 || (y - 9.0).rem_euclid(36.0) < 6.0);
+    let net = Exemplar::new(&net.input(), 240.0, 0.0, monitor.job()).unwrap();
+    let periods = [DVec2::new(40.0, 0.0), DVec2::new(0.0, 36.0)];
+    assert_eq!(lattice::lattice(&net, periods), Law::Lattice(periods));
 }

@@ -106,6 +106,10 @@ pub fn recover(pairs: &[PairEvidence]) -> Option<RecoveredCurve> {
     let all = || used.iter().flat_map(|pair| &pair.levels);
     let low = code_of(all().map(|level| level.short).fold(f64::INFINITY, f64::min));
     let high = code_of(all().map(|level| level.long).fold(0.0, f64::max));
+    // Ratios that contradict the order of the photos' brightness leave no range.
+    if low >= high {
+        return None;
+    }
 
     let (curved, plain) = (Fit::new(&used, TERMS)?, Fit::new(&used, 0)?);
     let shorter = Fit::new(&used, TERMS - 1)?;

@@ -6,8 +6,8 @@
 //! curve of the camera if the exposures are known and the curve is not that of sRGB; `noise` measures by how much
 //! neighbouring exposures differ; `motion` finds the pixels at which they disagree beyond this noise; `combine`
 //! averages the exposures that agree. The result has the pixel grid and the scale of one photo, the reference. Pixels
-//! that the reference shows well keep their values; pixels that it clips get the larger values that shorter exposures
-//! show.
+//! that the reference shows well keep their values, once the tone curve is undone; pixels that it clips get the larger
+//! values that shorter exposures show.
 //!
 //! Not modelled: tone curves other than that of sRGB if the exposures are unknown, and curves that differ between
 //! channels or photos; rotations and parallax between the photos; and lens flare, which differs between exposures only
@@ -127,8 +127,12 @@ fn tone_curve(
         }
         all.push(levels);
     }
-    let curve = if params.tone_curve == ToneCurve::Recovered { curve::recover(&known) } else { None };
-    let contradicts_srgb = curve.is_none() && curve::contradicts_srgb(all);
+    // The pixels must contradict the curve of sRGB whatever the ratios of the exposures are. A wrong ratio alone would
+    // look like a curve that is a power of the true one.
+    let contradicts_srgb = curve::contradicts_srgb(all);
+    let is_wanted = contradicts_srgb && params.tone_curve == ToneCurve::Recovered;
+    let curve = if is_wanted { curve::recover(&known) } else { None };
+    let contradicts_srgb = contradicts_srgb && curve.is_none();
     Ok((curve, contradicts_srgb))
 }
 
