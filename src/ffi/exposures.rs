@@ -76,7 +76,7 @@ pub struct luxfer_merge_params {
     pub reserved: u32,
 }
 
-versioned!(luxfer_merge_params, [160, 168], {
+versioned!(luxfer_merge_params, [168], {
     let d = Params::default();
     Self {
         struct_size: 168,
