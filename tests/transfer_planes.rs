@@ -200,6 +200,9 @@ fn transfers_that_do_not_fit_together_are_named() {
     let mut both = transfers(0.05);
     both[1].input.photo = both[0].input.photo.as_ref().map(|photo| Arc::new((**photo).clone()));
     run(&mut both, Stage::Emission, Stage::Relight).unwrap();
+    // The light of planes that were placed together cannot be solved for one of them alone.
+    let error = run(&mut both[..1], Stage::Relight, Stage::Relight).unwrap_err();
+    assert_eq!(error.kind, ErrorKind::InvalidOperation, "{error}");
     // Textures that were placed apart cannot be solved for together.
     let mut apart = transfers(0.05);
     for transfer in &mut apart {

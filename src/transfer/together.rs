@@ -401,13 +401,10 @@ impl Run<'_> {
             if !is_shared {
                 return Err(named(k, missing("run stage Emission of all transfers in one job")));
             }
-            if unsolved.others.len() + 1 != count {
-                return Err(named(
-                    k,
-                    missing("run stage Relight of the transfers that stage Emission placed in one job"),
-                ));
-            }
             all.push((k, unsolved.clone(), target));
+        }
+        if let Some((k, ..)) = all.iter().find(|(_, unsolved, _)| unsolved.others.len() + 1 != count) {
+            return Err(named(*k, missing("run stage Relight of all transfers that stage Emission placed in one job")));
         }
         all.sort_by_key(|(_, unsolved, _)| unsolved.placed.material);
         let in_stage = |e: Error| self.for_all(Stage::Relight, e);

@@ -12,8 +12,8 @@ use glam::DVec2;
 /// light. Separate lamps on a lattice do not overlap their copies at all. [bench photos:tune]
 const MIN_OVERLAP: f64 = 0.3;
 
-/// If one of the short vectors of the lattice slides the lights along the x or the y axis, returns the direction of this
-/// axis and the period across it. `None` if no vector does.
+/// If one of the short vectors of the lattice slides the lights along the x or the y axis, returns the direction of
+/// this axis and the period across it. `None` if no vector does.
 pub fn find(exemplar: &Exemplar, found: [DVec2; 2]) -> Option<[DVec2; 2]> {
     let [a, b] = basis::reduced(found);
     [[a, b], [b, a], [a - b, a], [a + b, a]].into_iter().find_map(|[slide, across]| {
