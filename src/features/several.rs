@@ -12,7 +12,7 @@ use crate::job::Job;
 /// over which its own strokes have grown. Ignores the strokes of `input.room`. The results are in the order of
 /// `planes`, and do not depend on it otherwise.
 ///
-/// Errors: those of [`super::run`]; no plane.
+/// Errors: as for [`super::run`]; also if there is no plane.
 pub fn run_for_planes(input: &Input, planes: &[&[PlaneStroke]], params: &Params, job: Job) -> Result<Vec<Features>> {
     params.check()?;
     let (photo, _) = clean::clean(input.photo, job.part(0.0, 0.05))?;

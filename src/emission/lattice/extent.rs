@@ -66,7 +66,7 @@ fn to_like_column(exemplar: &Exemplar, axis: usize) -> Option<f64> {
 
 /// Returns two lengths along an axis (0 for x, 1 for y), in unwarped pixels: the length of the box around all `lamps`,
 /// and the length of a gap between lamps. A gap is an interval of the axis that no lamp reaches into. If there are
-/// several, `choose` picks the longest or the shortest one. If there is none, the length of the gap is 0.
+/// several, `choose` picks the longest or the shortest one. Without a gap, the length of the gap is 0.
 fn spread<'a>(lamps: impl Iterator<Item = &'a Component>, axis: usize, choose: fn(usize, usize) -> usize) -> [f64; 2] {
     let taken = intervals(lamps, axis);
     let gap = taken.windows(2).map(|pair| pair[1][0] - pair[0][1]).reduce(choose);

@@ -126,7 +126,7 @@ pub fn recover(pairs: &[PairEvidence]) -> Option<RecoveredCurve> {
         let slopes = difference(basis(code), basis(high));
         let variance: f64 =
             (0..TERMS).map(|i| slopes[i] * (0..TERMS).map(|j| curved.covariance[i][j] * slopes[j]).sum::<f64>()).sum();
-        // The last basis function shows how much those that are left out may change.
+        // The last basis function shows how much the basis functions of higher order, which are left out, may change.
         let last = slopes[TERMS - 1] * coefficients[TERMS - 1]
             + (0..TERMS - 1).map(|k| slopes[k] * (coefficients[k] - shorter.solution[k])).sum::<f64>();
         let error = maths::hypot((scale * variance.max(0.0)).sqrt(), last);

@@ -36,7 +36,7 @@ pub fn place(scene: &mut Scene, surface: &Surface, texture: Image, strength: Vec
 /// Like [`place`], for several surfaces of one scene, each with its texture and strength. The result is in the order of
 /// the surfaces.
 ///
-/// Errors: those of [`place`]; `InvalidArgument` if two surfaces share a triangle. The scene is then unchanged.
+/// Errors: as for [`place`]; `InvalidArgument` if two surfaces share a triangle. The scene is then unchanged.
 pub fn place_all(scene: &mut Scene, lights: Vec<(&Surface, Image, Vec3)>) -> Result<Vec<Placed>> {
     for (surface, texture, strength) in &lights {
         check_light(scene, surface, texture, *strength)?;
