@@ -101,6 +101,14 @@ def above_zero(text: str) -> float:
     return value
 
 
+def one_over(text: str) -> float:
+    """Parses 1/n, with a whole n in [1, 20]."""
+    value = real(text)
+    if value is None or not 0.05 <= value <= 1 or abs(1 / value - round(1 / value)) > 1e-9:
+        raise wrong(text, "1/n with a whole n in [1, 20], such as 0.25 or 1")
+    return value
+
+
 def numbers(text: str, count: int) -> tuple[float, ...] | None:
     """Parses numbers separated by commas; None if they are not `count` numbers."""
     parts = [real(part) for part in text.split(",")]

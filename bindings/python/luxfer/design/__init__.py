@@ -9,6 +9,7 @@ from .arrange import Arrangement, Offer, Search, arrange
 from .check import Checked, Finding, Settings, check
 from .command import main
 from .energy import Energy, Hours, Standby
+from .glare_table import UgrTable, ugr_table
 from .likeness import Likeness
 from .look import Distance, distance
 from .luminaires import Luminaire, Product, dimmed, from_transfer, layout, lit_scene
@@ -39,6 +40,7 @@ __all__ = [
     "Settings",
     "Solution",
     "Standby",
+    "UgrTable",
     "Wishes",
     "areas",
     "arrange",
@@ -60,4 +62,5 @@ __all__ = [
     "schedule",
     "solve",
     "standard",
+    "ugr_table",
 ]
