@@ -243,7 +243,7 @@ def _checked_size(size: Sequence[float] | None, stated: Sequence[float], who: st
     """The size of the opening; refuses a size without area."""
     found = tuple(float(v) for v in (stated if size is None else size))
     if len(found) != 3 or not all(map(math.isfinite, found)):
-        raise ValueError(f"size is {size!r}; it must be three finite lengths in metres: along C = 0, C = 90 and the axis")
+        raise ValueError(f"size is {size!r}; it must be three finite lengths in m: along C = 0, C = 90 and the axis")
     if not max(float(projected_area(found, c, g)) for c, g in ((0, 0), (0, 90), (90, 90))) > 0:
         raise ValueError(
             f"size of {who} is {' x '.join(f'{v:g}' for v in found)} m, an opening without area; a UGR table needs its "

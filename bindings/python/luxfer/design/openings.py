@@ -8,6 +8,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 
+#: Shapes of openings.
+SHAPES = ("rectangle", "round", "tube", "globe")
+
+
 def projected_area(size: Sequence[float], c: ArrayLike, gamma: ArrayLike) -> NDArray[np.float64]:
     """The area in m² of a luminous opening as seen from far away in the directions c, gamma in degrees. size is as in
     DistributionReport; all sides of a box are luminous over its whole height."""
@@ -42,6 +46,26 @@ def is_round(size: Sequence[float]) -> bool:
     """Whether the opening is round as seen from below."""
     x, y, _ = completed(size)
     return x < 0 and y < 0
+
+
+def shape_of(size: Sequence[float]) -> str | None:
+    """The shape, one of SHAPES, of an opening; None if it states no size."""
+    x, y, z = completed(size)
+    if sum(v != 0 for v in (x, y, z)) < 2:
+        return None
+    if is_round(size):
+        return "globe" if z < 0 else "round"
+    if z < 0 and (x < 0 or y < 0 or x == 0 or y == 0):
+        return "tube"
+    return "round" if x < 0 or y < 0 else "rectangle"
+
+
+def sides_of(size: Sequence[float]) -> tuple[float, float, float]:
+    """The longer and the shorter horizontal side, and the height of an opening in metres."""
+    x, y, z = (abs(v) for v in completed(size))
+    # A tube that states one diameter is as wide as it is high.
+    x, y = (x or z, y or z) if size[2] < 0 else (x, y)
+    return max(x, y), min(x, y), z
 
 
 def _cylinder(u: NDArray[np.float64], axis: int, length: float, diameters: tuple[float, float]) -> NDArray[np.float64]:
