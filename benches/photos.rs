@@ -44,8 +44,8 @@
 //! - A trap is a photo without a pattern of lamps. It is right if the run ends in an error or warns; otherwise it is
 //!   judged like other photos.
 //! - A photo whose lamps lie on no plane, or shine away from the camera, is right if the run ends in an error, or
-//!   warns by `DIM_LAMPS` or `NO_PATTERN` that its texture should not be used; otherwise it is judged like other
-//!   photos.
+//!   warns by `DIM_LAMPS`, `NO_PATTERN` or `OFF_PLANE` that its texture should not be used; otherwise it is judged like
+//!   other photos.
 //! - A photo whose true lamps are not known has no verdict; if only its camera is not known, the masks alone decide.
 
 #[path = "photos/camera.rs"]

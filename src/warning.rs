@@ -79,10 +79,13 @@ pub enum Code {
     AmbiguousPaint = 30,
     /// Stylisation: a small area of the artwork, such as a stain, differs from all other areas of similar illumination.
     Blemish = 31,
+    /// Unwarping: the sizes of the lamps in the photo contradict the perspective of the plane. The lamps do not lie on
+    /// the plane, or the mask or the camera is wrong.
+    OffPlane = 32,
 }
 
 impl Code {
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self::FocalAssumed,
         Self::ViewUncertain,
         Self::LensDistortion,
@@ -114,6 +117,7 @@ impl Code {
         Self::LightNotPainted,
         Self::AmbiguousPaint,
         Self::Blemish,
+        Self::OffPlane,
     ];
 }
 

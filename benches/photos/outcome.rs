@@ -81,7 +81,8 @@ impl Outcome {
     /// Whether the run reports that its texture should not be used: it ended early, the painted lamps do not shine, or
     /// a texture without light would be nearer to the photo.
     pub fn declines(&self) -> bool {
-        self.failure.is_some() || self.raised().iter().any(|(_, w)| matches!(w.code, Code::DimLamps | Code::NoPattern))
+        self.failure.is_some()
+            || self.raised().iter().any(|(_, w)| matches!(w.code, Code::DimLamps | Code::NoPattern | Code::OffPlane))
     }
 
     /// Reports of the run that its texture may be wrong: its error, and its warnings up to the texture.

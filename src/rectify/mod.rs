@@ -45,6 +45,7 @@ pub mod hough;
 mod lanes;
 mod manhattan;
 pub mod metric;
+mod off_plane;
 mod params;
 mod plane;
 mod quad;
@@ -63,6 +64,7 @@ mod warnings;
 
 pub use distortion::Distortion;
 pub use focal::FocalPrior;
+pub use off_plane::off_plane;
 pub use params::{LineDetector, Metric, Params, Search, UnwarpParams};
 pub use resample::{undistort, warp, warp_photo};
 pub use squareness::Squareness;

@@ -1,6 +1,7 @@
 //! Collects the warnings of all stages of a transfer.
 
 use super::{Results, Stage};
+use crate::rectify;
 use crate::segment::{self, StrokeSet};
 use crate::warning::Warning;
 
@@ -38,6 +39,9 @@ impl Results {
         if let Some(unwarped) = &self.unwarped {
             add(Stage::Unwarp, unwarped.warnings());
         }
+        if let (Some(lights), Some(unwarped)) = (&self.lights, &self.unwarped) {
+            add(Stage::Unwarp, rectify::off_plane(&lights.mask, unwarped).into_iter().collect());
+        }
         if let Some(emission) = &self.emission {
             add(Stage::Emission, emission.warnings());
         }
@@ -51,13 +55,15 @@ impl Results {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Homography;
     use crate::image::Image;
+    use crate::rectify::Unwarped;
     use crate::scene::surface::{self, Placed};
     use crate::scene::{Mesh, Scene};
     use crate::segment::Segmentation;
     use crate::transfer::LitScene;
     use crate::warning::Code;
-    use glam::{DVec3, Vec3};
+    use glam::{DMat3, DVec2, DVec3, Vec3};
     use std::sync::Arc;
 
     /// Returns the warnings about an image ten columns wide. The mask of the plane covers columns `0..plane`, and the
@@ -77,6 +83,29 @@ mod tests {
         assert_eq!(codes(8, 2), []);
         assert_eq!(codes(8, 7), [(Some(Stage::Lights), Code::AlmostAllLit)]);
         assert_eq!(codes(0, 0), [(Some(Stage::Plane), Code::EmptyMask), (Some(Stage::Lights), Code::EmptyMask)]);
+    }
+
+    #[test]
+    fn lamps_off_the_plane_are_a_warning_of_the_unwarping() {
+        // The plane recedes towards the right, but a row of lamps keeps its size in the photo.
+        let row = Image::from_fn(400, 20, |x, y| [f32::from(x % 40 < 20 && (5..15).contains(&y))]).unwrap();
+        let to_plane = Homography(DMat3::from_cols(DVec3::new(1.0, 0.0, -0.002), DVec3::Y, DVec3::Z));
+        let unwarped = Unwarped {
+            image: Image::new(4, 4, 3).unwrap(),
+            valid: Image::from_fn(4, 4, |_, _| [1.0]).unwrap(),
+            to_photo: to_plane.inverse().into(),
+            pixel_size: 0.01,
+            corners: [DVec2::ZERO; 4],
+            aspect_confidence: 1.0,
+            corner_error: [0.0; 4],
+        };
+        let results = Results {
+            lights: Some(Arc::new(Segmentation::from_confidence(&row).unwrap())),
+            unwarped: Some(Arc::new(unwarped)),
+            ..Results::default()
+        };
+        let list = results.warnings(&StrokeSet::default());
+        assert!(list.iter().any(|(stage, warning)| (*stage, warning.code) == (Some(Stage::Unwarp), Code::OffPlane)));
     }
 
     #[test]

@@ -719,6 +719,11 @@ class WarningCode(IntEnum):
     severity is the difference in paint from this place that all but 5 % of the places with similar guides
     exceed, divided by the typical difference in paint between places with equal guides. The warning points to
     the place in the artwork."""
+    OFF_PLANE = 32
+    """The sizes of the lamps in the photo contradict the perspective of the plane: the lamps hang or lie on
+    several planes, the mask of the lights shows other things, or the camera is wrong. Where the photo shows the
+    plane k times as large, it would show lamps on the plane k times as large, but shows these lamps k^severity
+    times as large. Only luxfer_transfer compares them, because luxfer_rectify does not know the lamps."""
 
 
 class IlluminanceImage(IntEnum):

@@ -10,6 +10,7 @@ const ADVICE: Record<string, string> = {
   LAYOUT_UNCERTAIN: "Paint a Not plane stroke on each wall and on the floor",
   MAGNIFIED: "Trust the lamps near the camera; for the far ones take a photo from nearer",
   PLANE_NEAR_HORIZON: "Take the photo from farther below the lamps, so that their plane is seen less edge-on",
+  OFF_PLANE: "Lamps that hang or lie on several planes have no pattern; else drag the Grid onto a rectangle of the ceiling",
   PATTERN_UNCERTAIN: "Compare the plan in Lamps with the photo; correct the lights by Light and Not light strokes",
   NO_PATTERN: "Paint more strokes where the masks are wrong; lamps that hang or lie on several planes have no pattern",
   FEW_LAMPS: "Use a photo with more lamps in full view, or check that the mask keeps them apart",

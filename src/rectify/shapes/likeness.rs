@@ -36,7 +36,7 @@ const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 const BLOOMS: [f64; 6] = [0.0, 0.5, 1.0, 1.5, 2.0, 3.0];
 const BLOOM_SPREAD: f64 = 1.5;
 /// Unit of bloom as a share of the photo's longer side: one pixel in a photo of 640 pixels. [convention]
-const BLOOM_UNIT: f64 = 1.0 / 640.0;
+pub const BLOOM_UNIT: f64 = 1.0 / 640.0;
 /// Lower bound of the semi-axes of a region after its bloom is removed, in photo pixels; shorter semi-axes are raised
 /// to this. [convention]
 const MIN_SEMIAXIS: f64 = 0.5;

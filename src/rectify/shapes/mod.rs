@@ -21,6 +21,7 @@ use crate::error::Result;
 use crate::geometry::FocalSource;
 use crate::image::Image;
 use crate::job::Job;
+pub use likeness::BLOOM_UNIT;
 use likeness::Shape;
 use tilt::{Tilt, TiltEstimate};
 

@@ -31,6 +31,7 @@ ADVICE = {
     "UNCERTAIN_MASK": "try a stroke on the part taken for another surface; --preview-masks masks.png shows it",
     "MISSED_STROKES": "the classes look alike: try more strokes on both; --preview-masks masks.png shows the mask",
     "MAGNIFIED": "try a photo of more pixels, or one that looks more towards the plane",
+    "OFF_PLANE": "use a photo whose lamps lie on the ceiling, or one with more straight edges along the room",
     "NO_LATTICE": "try strokes on the lamps that the mask leaves out, if the lamps are regular",
     "UNREACHABLE": "try --white with a higher luminance, or a scene with less other light",
 }
