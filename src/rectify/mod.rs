@@ -41,6 +41,7 @@ mod focal;
 mod footprint;
 mod gather;
 pub mod gradient;
+mod grid_map;
 pub mod hough;
 mod lanes;
 mod manhattan;
@@ -63,8 +64,9 @@ mod warnings;
 
 pub use distortion::Distortion;
 pub use focal::FocalPrior;
+pub use grid_map::GridMap;
 pub use params::{LineDetector, Metric, Params, Search, UnwarpParams};
-pub use resample::{undistort, warp, warp_photo};
+pub use resample::{undistort, warp, warp_grid, warp_photo};
 pub use squareness::Squareness;
 pub use unwarp::unwarp;
 pub use vanishing::VanishingPoint;

@@ -138,6 +138,15 @@ fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     if share > MIN_HARMONIC && amplitude > MIN_CONTRAST { amplitude * share } else { 0.0 }
 }
 
+/// Whether a mark of the given radius, in pixels, surrounds a position.
+pub fn is_mark(grey: &Image, at: DVec2, radius: f64) -> bool {
+    CIRCLE_SHARES.iter().all(|share| quadrants(grey, at, share * radius) > 0.0)
+}
+
+/// Radii of the circles on which the quadrants of a mark of known size must show, in units of its radius. [convention:
+/// well inside the mark]
+const CIRCLE_SHARES: [f64; 2] = [0.4, 0.7];
+
 /// Refines a saddle to sub-pixel precision (Förstner and Gülch 1987). At the corner q of black and white quadrants, the
 /// gradient g at each surrounding point p is perpendicular to p - q. The result minimises Σ w (g · (p - q))², with
 /// weights w that fall with the distance |p - q|. `None` if the gradients do not determine q, or if an iteration moves

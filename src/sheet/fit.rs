@@ -1,7 +1,11 @@
-//! Identifies the marks among the candidates, and fits the map from the page to the photo.
+//! Identifies the marks among the candidates, finds the dots, and fits the map from the page to the photo.
 
-use super::detect::{Candidate, refine};
+use super::detect::{Candidate, is_mark, refine};
+use super::dots;
+use super::model::{PageMap, Sighting, Units};
 use super::page::Page;
+use super::relief::{self, Relief};
+use super::select::{self, FittedMap};
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::geometry::linear::solve;
@@ -12,6 +16,14 @@ use glam::DVec2;
 
 /// Minimum number of marks: fewer marks could agree by coincidence.
 const MIN_MARKS: usize = 6;
+/// With at least `BENT_MARKS` marks within the first tolerance, the sheet may be bent without limit. With one mark
+/// less, half of the dots must be found too.
+const BENT_MARKS: usize = 9;
+/// A point is discarded if its distance from the place that the other points predict is more than this many standard
+/// deviations, and more than `MIN_OUTLIER` pixels of the photo. [convention: at one of 20,000 points if nine degrees of
+/// freedom are left; a tenth of the distance by which paint that covers half a mark moves it]
+const OUTLIER: f64 = 6.0;
+const MIN_OUTLIER: f64 = 0.3;
 /// Maximum distance between a candidate and the position that a map predicts for its mark, as a share of `extent` (the
 /// larger distance between opposite corner marks). The first tolerance is for the map through four candidates, the
 /// final one for the least-squares map. [bench constants:sheet]
@@ -24,44 +36,192 @@ const FINAL_TOLERANCE: f64 = 0.004;
 const WINDOW: f64 = 0.6;
 const MIN_WINDOW: f64 = 2.0;
 
+/// The map from pixels of the page to pixels of the photo.
 pub struct Fit {
-    /// Maps pixels of the page to pixels of the photo.
-    pub to_photo: Homography,
+    model: PageMap,
+    relief: Relief,
     /// Indices in [`Page::marks`] of the marks used.
     pub marks: Vec<usize>,
-    /// Root mean square distance between marks and their predicted positions, in pixels of the photo.
+    /// Number of dots used.
+    pub dots: usize,
+    /// Root mean square distance between marks and dots and the positions that the model without relief predicts, in
+    /// pixels of the photo.
     pub residual: f64,
-    /// Photo pixels per page pixel, along the longer of the two diagonals between opposite corner marks in the photo.
-    pub scale: f64,
+    /// Variance of the distance between true and estimated position, in square pixels of the photo, at each place.
+    pub variance: Vec<f64>,
 }
 
-pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], job: Job) -> Result<Fit> {
-    let first = guess(page, candidates, job)?;
-    let found = first.ok_or_else(|| too_few(candidates.len()))?;
+impl Fit {
+    pub fn apply(&self, page: DVec2) -> DVec2 {
+        self.model.apply(page) + self.relief.at(page, &self.model)
+    }
+}
 
-    // Refine each mark to sub-pixel precision, in a window inside the mark.
-    let mut pairs = Vec::new();
-    for (mark, at) in found.pairs {
+/// A mark or a dot in the photo, with its index on the page.
+#[derive(Clone, Copy)]
+enum Which {
+    Mark(usize),
+    Dot,
+}
+
+/// Fits the map. `places` are the points of the page whose errors are wanted.
+pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], places: &[DVec2], job: Job) -> Result<Fit> {
+    let found = guess(page, candidates, job.part(0.0, 0.5))?.ok_or_else(|| too_few(candidates.len()))?;
+    let pairs = refined(page, grey, &found);
+    let job = job.part(0.5, 1.0);
+
+    // A flat sheet: discard marks that lie farther than the final tolerance from their predicted positions.
+    let tolerance = FINAL_TOLERANCE * extent(page, &found.map);
+    let homography = |start: Homography, pairs: &[(usize, DVec2)]| {
+        let pairs: Vec<_> = pairs.iter().map(|&(mark, at)| (page.marks[mark], at)).collect();
+        least_squares(0.5 * DVec2::new(page.width as f64, page.height as f64), start, &pairs)
+    };
+    let flat = homography(found.map, &pairs);
+    let mut near = pairs.clone();
+    near.retain(|&(mark, at)| flat.apply(page.marks[mark]).distance(at) < tolerance);
+    let is_flat = near.len() >= MIN_MARKS;
+    let may_bend = pairs.len() + 1 >= BENT_MARKS;
+    let used = match (may_bend, is_flat) {
+        (true, _) => &pairs,
+        (false, true) => &near,
+        (false, false) => return Err(too_few(near.len())),
+    };
+    let start = flat_model(page, grey, &homography(flat, used)).ok_or_else(|| too_few(used.len()))?;
+
+    let mut points: Vec<(Which, Sighting)> =
+        used.iter().map(|&(mark, at)| (Which::Mark(mark), Sighting { page: page.marks[mark], photo: at })).collect();
+    let mut best = robust(&start, &mut points, places, job.part(0.0, 0.3))?;
+    for round in 0..2 {
+        if let Some(best) = best.first() {
+            add_marks(page, grey, &best.model, &mut points);
+            add_dots(page, grey, &best.model, &mut points);
+        }
+        best =
+            robust(&start, &mut points, places, job.part(0.3 + 0.3 * f64::from(round), 0.6 + 0.3 * f64::from(round)))?;
+    }
+    finish(page, &points, &best, places, is_flat)
+}
+
+/// Refines each mark to sub-pixel precision, in a window inside the mark.
+fn refined(page: &Page, grey: &Image, found: &Guess) -> Vec<(usize, DVec2)> {
+    let refined = found.pairs.iter().filter_map(|&(mark, at)| {
         let centre = page.marks[mark];
         let length_in_photo =
             |step: DVec2| found.map.apply(centre + step * page.radius).distance(found.map.apply(centre));
         let radius = (WINDOW * length_in_photo(DVec2::X).min(length_in_photo(DVec2::Y))).max(MIN_WINDOW);
-        if let Some(at) = refine(grey, at, radius) {
-            pairs.push((mark, at));
+        refine(grey, at, radius).map(|at| (mark, at))
+    });
+    refined.collect()
+}
+
+fn flat_model(page: &Page, grey: &Image, map: &Homography) -> Option<PageMap> {
+    let (page_size, photo_size) =
+        (DVec2::new(page.width as f64, page.height as f64), DVec2::new(grey.width as f64, grey.height as f64));
+    let units = Units {
+        page_centre: 0.5 * page_size,
+        page_unit: 0.5 * page_size.max_element(),
+        photo_centre: 0.5 * photo_size,
+        photo_unit: 0.5 * photo_size.length(),
+    };
+    PageMap::flat(units, &map.0)
+}
+
+/// Chooses and fits the models, and discards outliers, until there are none.
+fn robust(start: &PageMap, points: &mut Vec<(Which, Sighting)>, places: &[DVec2], job: Job) -> Result<Vec<FittedMap>> {
+    let fewest = points.len() - points.len() / 4;
+    loop {
+        let found = select::choose(start, &sightings(points), places, job)?;
+        let count = points.len();
+        if let Some(best) = found.first() {
+            discard(&best.model, points, fewest);
+        }
+        if points.len() == count {
+            return Ok(found);
         }
     }
-    let extent = extent(page, &found.map);
-    let mut map = least_squares(page, found.map, &pairs);
-    // Discard marks that lie farther than the final tolerance from their predicted positions.
-    pairs.retain(|&(mark, at)| map.apply(page.marks[mark]).distance(at) < FINAL_TOLERANCE * extent);
-    if pairs.len() < MIN_MARKS {
-        return Err(too_few(pairs.len()));
+}
+
+/// Discards outliers, the farthest first, but leaves at least `fewest` points.
+fn discard(model: &PageMap, points: &mut Vec<(Which, Sighting)>, fewest: usize) {
+    let mut model = model.clone();
+    while points.len() > fewest {
+        let all = sightings(points);
+        let (fitted, squares) = model.fit(&all);
+        model = fitted;
+        let Some(left_out) = model.left_out(&all, squares) else { return };
+        let deviations =
+            left_out.iter().map(|(distance, variance)| distance / (OUTLIER * variance.sqrt()).max(MIN_OUTLIER));
+        match deviations.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((farthest, deviation)) if deviation > 1.0 => points.remove(farthest),
+            _ => return,
+        };
     }
-    map = least_squares(page, map, &pairs);
-    let squares: f64 = pairs.iter().map(|&(m, at)| map.apply(page.marks[m]).distance_squared(at)).sum();
-    let residual = (squares / pairs.len() as f64).sqrt();
-    let scale = extent / page.marks[0].distance(page.marks[2]);
-    Ok(Fit { to_photo: map, marks: pairs.iter().map(|p| p.0).collect(), residual, scale })
+}
+
+fn sightings(points: &[(Which, Sighting)]) -> Vec<Sighting> {
+    points.iter().map(|p| p.1).collect()
+}
+
+/// Adds the marks that only the map of the bent sheet predicts well enough.
+fn add_marks(page: &Page, grey: &Image, model: &PageMap, points: &mut Vec<(Which, Sighting)>) {
+    let is_used = |mark: usize| points.iter().any(|p| matches!(p.0, Which::Mark(used) if used == mark));
+    let missing: Vec<usize> = (0..page.marks.len()).filter(|&mark| !is_used(mark)).collect();
+    for mark in missing {
+        let place = page.marks[mark];
+        let at = model.apply(place);
+        let length = |step: DVec2| model.apply(place + page.radius * step).distance(at);
+        let radius = length(DVec2::X).min(length(DVec2::Y));
+        let size = DVec2::new(grey.width as f64, grey.height as f64);
+        if !(at.cmpgt(DVec2::splat(radius)).all() && at.cmplt(size - radius).all()) {
+            continue;
+        }
+        let found = refine(grey, at, (WINDOW * radius).max(MIN_WINDOW));
+        if let Some(photo) = found.filter(|&photo| is_mark(grey, photo, radius)) {
+            points.push((Which::Mark(mark), Sighting { page: place, photo }));
+        }
+    }
+}
+
+/// Searches all dots anew by the map. If fewer than a third are found, the sheet has none.
+fn add_dots(page: &Page, grey: &Image, model: &PageMap, points: &mut Vec<(Which, Sighting)>) {
+    points.retain(|p| matches!(p.0, Which::Mark(_)));
+    let found: Vec<(Which, Sighting)> = page
+        .dots
+        .iter()
+        .filter_map(|&dot| {
+            let photo = dots::find(grey, page, dot, model)?;
+            Some((Which::Dot, Sighting { page: dot, photo }))
+        })
+        .collect();
+    if 3 * found.len() >= page.dots.len() {
+        points.extend(found);
+    }
+}
+
+/// Checks that the points suffice, and adds the relief.
+fn finish(
+    page: &Page,
+    points: &[(Which, Sighting)],
+    models: &[FittedMap],
+    places: &[DVec2],
+    is_flat: bool,
+) -> Result<Fit> {
+    let marks: Vec<usize> = points
+        .iter()
+        .filter_map(|p| match p.0 {
+            Which::Mark(mark) => Some(mark),
+            Which::Dot => None,
+        })
+        .collect();
+    let dots = points.len() - marks.len();
+    let are_dots_seen = !page.dots.is_empty() && 2 * dots >= page.dots.len();
+    if marks.len() < MIN_MARKS || !(is_flat || are_dots_seen || marks.len() >= BENT_MARKS) {
+        return Err(too_few(marks.len()));
+    }
+    let estimate = relief::estimate(models, &sightings(points), places).ok_or_else(|| too_few(marks.len()))?;
+    let squares = models.first().map_or(0.0, |best| best.squares);
+    let residual = (squares / points.len() as f64).sqrt();
+    Ok(Fit { model: estimate.model, relief: estimate.relief, marks, dots, residual, variance: estimate.variance })
 }
 
 fn too_few(count: usize) -> Error {
@@ -142,18 +302,17 @@ fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
     Guess { map, pairs, misfit }
 }
 
-/// Finds the map that minimises the sum of squared distances between the marks and their predicted positions in the
-/// photo, by Gauss-Newton steps from `start`.
-fn least_squares(page: &Page, start: Homography, pairs: &[(usize, DVec2)]) -> Homography {
-    // Scale page coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
-    let half = DVec2::new(page.width as f64, page.height as f64) / 2.0;
+/// Finds the homography that minimises the sum of squared distances between mapped and given points, by Gauss-Newton
+/// steps from `start`. `half` is half the size of the area in which the points lie.
+pub fn least_squares(half: DVec2, start: Homography, pairs: &[(DVec2, DVec2)]) -> Homography {
+    // Scale coordinates to about [-1, 1], so that the eight parameters have similar magnitude.
     let to_unit = glam::DMat3::from_scale(half.recip()) * glam::DMat3::from_translation(-half);
     let mut h = start.0 * to_unit.inverse();
     h *= 1.0 / h.z_axis.z;
     for _ in 0..10 {
         let (mut matrix, mut right) = ([[0.0; 8]; 8], [0.0; 8]);
-        for &(mark, at) in pairs {
-            let p = (page.marks[mark] - half) / half;
+        for &(from, at) in pairs {
+            let p = (from - half) / half;
             let q = h * p.extend(1.0);
             let image = q.truncate() / q.z;
             for axis in 0..2 {
