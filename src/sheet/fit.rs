@@ -4,7 +4,7 @@ use super::detect::{Candidate, is_mark, refine};
 use super::dots;
 use super::model::{PageMap, Sighting, Units};
 use super::page::Page;
-use super::relief::{self, Relief};
+use super::relief::{self, ReliefMap};
 use super::select::{self, FittedMap};
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
@@ -38,8 +38,7 @@ const MIN_WINDOW: f64 = 2.0;
 
 /// The map from pixels of the page to pixels of the photo.
 pub struct Fit {
-    model: PageMap,
-    relief: Relief,
+    map: ReliefMap,
     /// Indices in [`Page::marks`] of the marks used.
     pub marks: Vec<usize>,
     /// Number of dots used.
@@ -53,7 +52,7 @@ pub struct Fit {
 
 impl Fit {
     pub fn apply(&self, page: DVec2) -> DVec2 {
-        self.model.apply(page) + self.relief.at(page, &self.model)
+        self.map.apply(page)
     }
 }
 
@@ -218,10 +217,10 @@ fn finish(
     if marks.len() < MIN_MARKS || !(is_flat || are_dots_seen || marks.len() >= BENT_MARKS) {
         return Err(too_few(marks.len()));
     }
-    let estimate = relief::estimate(models, &sightings(points), places).ok_or_else(|| too_few(marks.len()))?;
+    let (map, variance) = relief::estimate(models, &sightings(points), places).ok_or_else(|| too_few(marks.len()))?;
     let squares = models.first().map_or(0.0, |best| best.squares);
     let residual = (squares / points.len() as f64).sqrt();
-    Ok(Fit { model: estimate.model, relief: estimate.relief, marks, dots, residual, variance: estimate.variance })
+    Ok(Fit { map, marks, dots, residual, variance })
 }
 
 fn too_few(count: usize) -> Error {

@@ -5,8 +5,8 @@
 //! located to a small fraction of a pixel. In a perspective view it is still the corner of the quadrants, whereas the
 //! centre of a plain disk would no longer be the centre of its outline. Ten marks surround the picture: at the corners,
 //! at the midpoints of the sides, and two more that determine the orientation of the sheet. Six marks suffice. Between
-//! the marks there are small dots, which are found by the map through the marks. They show how the paper is bent; sheets
-//! without dots are read too.
+//! the marks there are small dots, which are found by the map through the marks. They show how the paper is bent;
+//! sheets without dots are read too.
 //!
 //! ```text
 //! page ─▶ print
@@ -15,8 +15,8 @@
 //!
 //! `page` arranges the page, [`print()`] draws it, `detect` finds marks in a photo, `fit` identifies them, `dots` finds
 //! the dots, `model` is the map of paper bent in one direction through a lens with radial distortion, `select` chooses
-//! its terms, and `relief` adds what the model cannot hold, with the error of the map. [`align`] resamples the photo once
-//! and removes uneven illumination, which it measures on the white of the marks.
+//! its terms, and `relief` adds what the model cannot hold, with the error of the map. [`align`] resamples the photo
+//! once and removes uneven illumination, which it measures on the white of the marks.
 //!
 //! Not modelled: waves and creases of the paper are only measured around the picture; within it they are interpolated,
 //! and `Aligned::error` states by how much they may differ. Bumps that end within the picture, thick paint and
