@@ -20,8 +20,8 @@ const MIN_MARKS: usize = 6;
 /// less, half of the dots must be found too.
 const BENT_MARKS: usize = 9;
 /// A point is discarded if its distance from the place that the other points predict is more than this many standard
-/// deviations, and more than `MIN_OUTLIER` pixels of the photo. [convention: at one of 20,000 points if nine degrees of
-/// freedom are left; a tenth of the distance by which paint that covers half a mark moves it]
+/// deviations, and more than `MIN_OUTLIER` pixels of the photo. [convention: beyond the reach of noise, also with few
+/// points; below the displacement by paint that covers a part of a mark]
 const OUTLIER: f64 = 6.0;
 const MIN_OUTLIER: f64 = 0.3;
 /// Maximum distance between a candidate and the position that a map predicts for its mark, as a share of `extent` (the

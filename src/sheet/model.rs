@@ -17,8 +17,8 @@ const STEP: f64 = 1e-5;
 /// [rounding]
 const MAX_STEPS: usize = 60;
 const CONVERGED: f64 = 1e-7;
-/// Damping of the fit at first, at least and at most, and the factor between two values of it. [convention: Levenberg and
-/// Marquardt]
+/// Damping of the fit at first, at least and at most, and the factor between two values of it. [convention: Levenberg
+/// and Marquardt]
 const DAMPING: [f64; 3] = [1e-4, 1e-9, 1e3];
 const DAMPING_FACTOR: f64 = 10.0;
 /// Smallest third coordinate of points in front of the camera; that of the page's centre is 1. [convention: a page that

@@ -94,9 +94,9 @@ struct Outcome {
     normal: Cholesky,
 }
 
-/// Estimates the field with each of the models. Returns the most probable map, and at each of `places`, in pixels of the
-/// page, the variance of the distance between true and estimated position, in square pixels of the photo. `None` if the
-/// points determine no model.
+/// Estimates the field with each of the models. Returns the most probable map, and at each of `places`, in pixels of
+/// the page, the variance of the distance between true and estimated position, in square pixels of the photo. `None` if
+/// the points determine no model.
 pub fn estimate(models: &[FittedMap], points: &[Sighting], places: &[DVec2]) -> Option<(ReliefMap, Vec<f64>)> {
     let problems: Vec<Problem> = models.iter().map(|fitted| Problem::new(&fitted.model, points, places)).collect();
     let mut outcomes: Vec<Outcome> = Vec::new();

@@ -16,12 +16,12 @@ const ANGLES: usize = 8;
 const TURNED: usize = 4;
 /// A set of terms is only considered if the coordinates of the points are at least this many more than its parameters.
 const MIN_REST: usize = 5;
-/// The points determine a set of terms if the variance of its map, in the mean over the places, is at most this many times the
-/// variance of a point. [convention: flat paper with ten marks has 0.4; sets that the marks do not determine, more than
-/// 10]
+/// The points determine a set of terms if the variance of its map, in the mean over the places, is at most this many
+/// times the variance of a point. [convention: flat paper with ten marks has about 8 / 20; the value of a set that the
+/// marks do not determine has no bound]
 const MAX_GAIN: f64 = 4.0;
-/// Standard deviation, in pixels of the photo, below which errors of marks are not told from zero: marks blurred by lens
-/// and paper are never located better than this. [convention: any value from 0.005 to 0.03 chooses the same terms]
+/// Standard deviation, in pixels of the photo, below which errors of marks are not told from zero: marks blurred by
+/// lens and paper are not located better than this. [convention: a fiftieth of a pixel]
 pub const MARK_NOISE: f64 = 0.02;
 
 /// A fitted map.
@@ -34,9 +34,9 @@ pub struct FittedMap {
     pub criterion: f64,
 }
 
-/// Fits maps with all sets of terms that the points can determine. Returns the best one of each degree and number of coefficients
-/// of the lens, the one with the smallest criterion first. `flat` is the start of the fits, and `places` are the points
-/// of the page for which the map is wanted.
+/// Fits maps with all sets of terms that the points can determine. Returns the best one of each degree and number of
+/// coefficients of the lens, the one with the smallest criterion first. `flat` is the start of the fits, and `places`
+/// are the points of the page for which the map is wanted.
 pub fn choose(flat: &PageMap, points: &[Sighting], places: &[DVec2], job: Job) -> Result<Vec<FittedMap>> {
     let coordinates = 2 * points.len();
     let is_determined = |terms: &MapTerms| terms.parameters() + MIN_REST <= coordinates;

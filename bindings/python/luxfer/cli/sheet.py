@@ -144,7 +144,8 @@ def read(args: argparse.Namespace, console: Console) -> Exit:
     doubts = []
     if report.error > UNEVEN:
         message = (
-            f"the alignment may be {1.96 * report.error:.1f} pixels wrong: the paper has waves or creases, or marks are covered"
+            f"the alignment may be {1.96 * report.error:.1f} pixels wrong: the paper has waves or creases, or marks "
+            "are covered"
         )
         doubts.append(doubt("sheet", "uneven", message, "try a scanner, or flatten the paper"))
     return console.print_result(result, [f"{report.marks} of 10 marks; aligned within {report.error:.2f} pixels"], doubts)
