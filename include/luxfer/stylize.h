@@ -678,8 +678,8 @@ luxfer_status luxfer_sheet_print(luxfer_image *picture,
  * result is the artwork, in linear RGB. params must be equal to the settings given to luxfer_sheet_print; NULL stands
  * for the defaults. The photo may be rotated and in perspective, the paper may be bent, and the lens may have radial
  * distortion about the centre of the photo. Sheets without dots, printed by versions before 0.2, are aligned too, less
- * exactly if they are bent. size is sizeof *report; report may be NULL, then size does not matter. The call takes up to
- * a few seconds. The caller releases *artwork. Any thread.
+ * exactly if they are bent. size is sizeof *report; report may be NULL, then size does not matter. The call takes up
+ * to a few seconds. The caller releases *artwork. Any thread.
  * LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_sheet_align(luxfer_image *photo,

@@ -16,6 +16,9 @@ use glam::DVec2;
 
 /// Minimum number of marks: fewer marks could agree by coincidence.
 const MIN_MARKS: usize = 6;
+/// The first tolerance if no map agrees with enough candidates. Half of the dots must then be found, as marks may agree
+/// by coincidence. [convention: marks of paper that is bent by 4 % of its width, seen from the side]
+const BENT_TOLERANCE: f64 = 0.05;
 /// With at least `BENT_MARKS` marks within the first tolerance, the sheet may be bent without limit. With one mark
 /// less, half of the dots must be found too.
 const BENT_MARKS: usize = 9;
@@ -65,7 +68,13 @@ enum Which {
 
 /// Fits the map. `places` are the points of the page whose errors are wanted.
 pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], places: &[DVec2], job: Job) -> Result<Fit> {
-    let found = guess(page, candidates, job.part(0.0, 0.5))?.ok_or_else(|| too_few(candidates.len()))?;
+    let (found, is_near) = match guess(page, candidates, FIRST_TOLERANCE, job.part(0.0, 0.2))? {
+        Some(found) => (found, true),
+        None => (
+            guess(page, candidates, BENT_TOLERANCE, job.part(0.2, 0.5))?.ok_or_else(|| too_few(candidates.len()))?,
+            false,
+        ),
+    };
     let pairs = refined(page, grey, &found);
     let job = job.part(0.5, 1.0);
 
@@ -79,7 +88,7 @@ pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], places: &[DVec2]
     let mut near = pairs.clone();
     near.retain(|&(mark, at)| flat.apply(page.marks[mark]).distance(at) < tolerance);
     let is_flat = near.len() >= MIN_MARKS;
-    let may_bend = pairs.len() + 1 >= BENT_MARKS;
+    let may_bend = pairs.len() + 1 >= BENT_MARKS || !is_near;
     let used = match (may_bend, is_flat) {
         (true, _) => &pairs,
         (false, true) => &near,
@@ -98,7 +107,7 @@ pub fn fit(page: &Page, grey: &Image, candidates: &[Candidate], places: &[DVec2]
         best =
             robust(&start, &mut points, places, job.part(0.3 + 0.3 * f64::from(round), 0.6 + 0.3 * f64::from(round)))?;
     }
-    finish(page, &points, &best, places, is_flat)
+    finish(page, &points, &best, places, is_near.then_some(is_flat))
 }
 
 /// Refines each mark to sub-pixel precision, in a window inside the mark.
@@ -197,13 +206,14 @@ fn add_dots(page: &Page, grey: &Image, model: &PageMap, points: &mut Vec<(Which,
     }
 }
 
-/// Checks that the points suffice, and adds the relief.
+/// Checks that the points suffice, and adds the relief. `is_flat` says whether the marks fit flat paper; `None` if they
+/// are only where a bent sheet may have them.
 fn finish(
     page: &Page,
     points: &[(Which, Sighting)],
     models: &[FittedMap],
     places: &[DVec2],
-    is_flat: bool,
+    is_flat: Option<bool>,
 ) -> Result<Fit> {
     let marks: Vec<usize> = points
         .iter()
@@ -214,7 +224,9 @@ fn finish(
         .collect();
     let dots = points.len() - marks.len();
     let are_dots_seen = !page.dots.is_empty() && 2 * dots >= page.dots.len();
-    if marks.len() < MIN_MARKS || !(is_flat || are_dots_seen || marks.len() >= BENT_MARKS) {
+    if marks.len() < MIN_MARKS
+        || !(are_dots_seen || is_flat.is_some_and(|is_flat| is_flat || marks.len() >= BENT_MARKS))
+    {
         return Err(too_few(marks.len()));
     }
     let (map, variance) = relief::estimate(models, &sightings(points), places).ok_or_else(|| too_few(marks.len()))?;
@@ -246,7 +258,7 @@ struct Guess {
 /// midpoint marks, each in four rotations; if one mark is missing, the corners or the midpoints are still complete.
 /// Returns the map under which most marks coincide with candidates; of maps with equal numbers, the map with the
 /// smallest misfit. `None` if no map makes [`MIN_MARKS`] marks coincide.
-fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess>> {
+fn guess(page: &Page, candidates: &[Candidate], tolerance: f64, job: Job) -> Result<Option<Guess>> {
     let n = candidates.len();
     let mut best: Option<Guess> = None;
     for a in 0..n {
@@ -259,7 +271,7 @@ fn guess(page: &Page, candidates: &[Candidate], job: Job) -> Result<Option<Guess
                         let from = [0, 1, 2, 3].map(|i| page.marks[first + i]);
                         let to = [0, 1, 2, 3].map(|i| quad[(i + turn) % 4]);
                         let Ok(map) = Homography::from_corners(from, to) else { continue };
-                        let guess = agreement(page, map, candidates);
+                        let guess = agreement(page, map, candidates, tolerance);
                         let better = |b: &Guess| (guess.pairs.len(), -guess.misfit) > (b.pairs.len(), -b.misfit);
                         if guess.pairs.len() >= MIN_MARKS && best.as_ref().is_none_or(better) {
                             best = Some(guess);
@@ -286,14 +298,16 @@ fn around(points: [DVec2; 4]) -> Option<[DVec2; 4]> {
 
 /// Returns the marks whose position, mapped to the photo by `map`, lies near a candidate. `misfit` is the sum of the
 /// squared distances between these marks and their candidates.
-fn agreement(page: &Page, map: Homography, candidates: &[Candidate]) -> Guess {
-    let tolerance = FIRST_TOLERANCE * extent(page, &map);
-    let (mut pairs, mut misfit) = (Vec::new(), 0.0);
+fn agreement(page: &Page, map: Homography, candidates: &[Candidate], tolerance: f64) -> Guess {
+    let tolerance = tolerance * extent(page, &map);
+    let (mut pairs, mut misfit): (Vec<(usize, DVec2)>, f64) = (Vec::new(), 0.0);
     for (mark, place) in page.marks.iter().enumerate() {
         let at = map.apply(*place);
         let distance = |c: &&Candidate| c.at.distance(at);
         let nearest = candidates.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        if let Some(c) = nearest.filter(|c| c.at.distance(at) < tolerance) {
+        // A map with its horizon on the page moves many marks to one candidate, which can be only one of them.
+        let is_free = |c: &&Candidate| pairs.iter().all(|&(_, used)| used != c.at);
+        if let Some(c) = nearest.filter(|c| c.at.distance(at) < tolerance).filter(is_free) {
             misfit += c.at.distance_squared(at);
             pairs.push((mark, c.at));
         }
