@@ -71,7 +71,7 @@ packages:
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
 tools: packages
-	@benches/peers/install.sh mitsuba python dask exr usd report exchange onnx docs studio deny
+	@benches/peers/install.sh mitsuba python dask exr usd report exchange glare onnx docs studio deny
 	@$(MAKE) --no-print-directory studio-setup
 
 # Rustup's minimal profile lacks rustfmt and clippy. They are added if the Rust servers can be reached; otherwise the

@@ -57,6 +57,34 @@ fn rendered(context: *mut luxfer_context, scene: *mut luxfer_scene) -> (*mut lux
     }
 }
 
+/// The settings choose the projection and the vertical illuminance; their defaults are checked against `narrow`, a
+/// report for an angle of view of 1 radian.
+unsafe fn rates_by_settings(context: *mut luxfer_context, image: *mut luxfer_image, narrow: &luxfer_glare_report) {
+    unsafe {
+        let mut params = std::mem::zeroed::<luxfer_glare_params>();
+        let size = size_of_val(&params);
+        assert_eq!(luxfer_init(LUXFER_STRUCT_GLARE_PARAMS, (&raw mut params).cast(), size), LUXFER_OK);
+        params.fov_y = 1.0;
+        let mut report = std::mem::zeroed::<luxfer_glare_report>();
+        let size = size_of_val(&report);
+        assert_eq!(luxfer_image_rate_glare(image, &params, &mut report, size), LUXFER_OK, "{}", message(context));
+        assert_eq!((report.ugr, report.dgp), (narrow.ugr, narrow.dgp));
+        params.vertical_illuminance = 5000.0;
+        params.projection = LUXFER_PROJECTION_ANGULAR;
+        assert_eq!(luxfer_image_rate_glare(image, &params, &mut report, size), LUXFER_OK, "{}", message(context));
+        assert_eq!(report.vertical_illuminance, 5000.0);
+        assert!(report.dgp > 0.45 && report.dgp_low_light == report.dgp, "{}", report.dgp);
+        params.projection = 2;
+        assert_eq!(luxfer_image_rate_glare(image, &params, &mut report, size), LUXFER_INVALID_ARGUMENT);
+        assert!(message(context).contains("projection is 2"), "{}", message(context));
+        // The caller of an older version has a shorter report.
+        params.projection = LUXFER_PROJECTION_PERSPECTIVE;
+        report.dgp = -1.0;
+        assert_eq!(luxfer_image_rate_glare(image, &params, &mut report, 40), LUXFER_OK, "{}", message(context));
+        assert_eq!(report.dgp, -1.0);
+    }
+}
+
 /// With its faces the luminaire is in the picture, and there is nothing to warn of.
 #[test]
 fn a_picture_shows_the_faces_of_the_luminaire() {
@@ -73,6 +101,7 @@ fn a_picture_shows_the_faces_of_the_luminaire() {
         let size = size_of_val(&report);
         assert_eq!(luxfer_image_get_glare(beauty, 1.0, 0.0, &mut report, size), LUXFER_OK, "{}", message(context));
         assert_eq!(report.unseen_lights, 0);
+        rates_by_settings(context, beauty, &report);
         for handle in [beauty.cast(), job.cast(), render.cast(), warnings.cast(), scene.cast(), context.cast()] {
             assert_eq!(luxfer_release(handle), LUXFER_OK);
         }

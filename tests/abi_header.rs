@@ -661,7 +661,9 @@ layouts! {
         clipped profile profile_error radiance contour reserved;
     luxfer_gonio_params: struct_size planes angles samples seed axis c0;
     luxfer_gonio_report: struct_size position flux flux_error intensity_error;
-    luxfer_glare_report: struct_size sources ugr background threshold solid_angle unseen_lights reserved;
+    luxfer_glare_params: struct_size projection fov_y threshold vertical_illuminance;
+    luxfer_glare_report: struct_size sources ugr background threshold solid_angle unseen_lights reserved dgp
+        vertical_illuminance dgp_low_light;
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size in_gamut colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;

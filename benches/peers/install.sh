@@ -36,6 +36,8 @@ install usd usd-core numpy
 install report numpy 'reportlab>=4'
 # Building models, and Radiance, to exchange lighting designs with and to recompute them by.
 install exchange numpy ifcopenshell pyradiance
+# UGR tables of luminaires by another program, and the glare of pictures by Radiance's evalglare.
+install glare numpy eulumdat-ugr pyradiance
 # Another runtime for ONNX files.
 install onnx onnxruntime numpy
 # The server of the studio.

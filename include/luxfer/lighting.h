@@ -741,7 +741,65 @@ typedef struct luxfer_glare_report {
     uint32_t unseen_lights;
     /** Reserved; always 0. */
     uint32_t reserved;
+    /**
+     * Daylight glare probability (Wienold and Christoffersen 2006), at most 1: 5.87e-5 E + 0.0918 log10(1 + sum of
+     * L² w / (E^1.87 p²)) + 0.16, with the vertical illuminance E in lux and the luminance L, solid angle w and
+     * position index p of each source. Below 0.35 glare is imperceptible; above 0.45 it is intolerable. The formula
+     * was found for values from 0.2 to 0.8 and E of at least 380 lux.
+     */
+    double dgp;
+    /**
+     * Illuminance in lux at the eye, on a plane across the line of sight, from which dgp was computed: the setting
+     * vertical_illuminance of luxfer_glare_params or, if that is 0, the illuminance from all pixels of the image. The
+     * latter is too low, and dgp wrong, if the image does not show the whole half-space ahead.
+     */
+    double vertical_illuminance;
+    /**
+     * The field dgp corrected for low light, as versions 1 and 2 of evalglare do: below 1000 lux, it is multiplied by
+     * 1 / (1 + exp(4 - 0.024 E)).
+     */
+    double dgp_low_light;
 } luxfer_glare_report;
+
+/** The projection of an image: a LUXFER_PROJECTION_ value. */
+typedef int32_t luxfer_projection;
+
+/** Settings of the glare rating of an image. Fill them with luxfer_glare_params_init. */
+typedef struct luxfer_glare_params {
+    /** sizeof(luxfer_glare_params), set by luxfer_glare_params_init. */
+    uint32_t struct_size;
+    /** Projection of the image: a LUXFER_PROJECTION_ value; default LUXFER_PROJECTION_PERSPECTIVE. */
+    luxfer_projection projection;
+    /**
+     * Vertical angle of view of the image in radians, in [0.001, pi - 0.001]; with LUXFER_PROJECTION_ANGULAR in
+     * [0.001, 2 pi]; default pi / 2. Pixels that are a right angle or more away from the line of sight do not count.
+     */
+    double fov_y;
+    /**
+     * Luminance in cd/m² from which on a pixel belongs to a glare source, in [0, 1e12]; 0, the default: five times the
+     * mean luminance of the image.
+     */
+    double threshold;
+    /**
+     * Illuminance in lux at the eye on a plane across the line of sight, in [0, 1e12], for an image that does not show
+     * the whole half-space ahead; 0, the default: the illuminance from all pixels of the image.
+     */
+    double vertical_illuminance;
+} luxfer_glare_params;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_glare_params_init(luxfer_glare_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_GLARE_PARAMS, place, size);
+}
+
+/** Perspective: the image of a pinhole camera. */
+#define LUXFER_PROJECTION_PERSPECTIVE 0
+
+/**
+ * Angular (equidistant) fisheye: the distance of a pixel from the centre of the image is proportional to the angle
+ * between its direction and the line of sight, as in Radiance's views of type a.
+ */
+#define LUXFER_PROJECTION_ANGULAR 1
 
 /**
  * Gets the correlated colour temperature of rgb, a linear colour. *kelvin receives the temperature of the nearest
@@ -766,11 +824,11 @@ luxfer_status luxfer_temperature_to_colour(luxfer_context *context,
                                            double rgb[3]);
 
 /**
- * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). The image is the view of a
- * level camera whose vertical angle of view is fov_y in radians, in [0.001, pi - 0.001]. Glare sources are the
- * connected regions of pixels with a luminance of at least threshold, in cd/m², in [0, 1e12]. If threshold is 0, five
- * times the mean luminance of the image is used. A wider angle of view gives a better estimate of the background
- * luminance. size is sizeof *report. Any thread.
+ * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), as luxfer_image_rate_glare
+ * does. The image is the view of a level camera whose vertical angle of view is fov_y in radians, in [0.001, pi -
+ * 0.001]. Glare sources are the connected regions of pixels with a luminance of at least threshold, in cd/m², in
+ * [0, 1e12]. If threshold is 0, five times the mean luminance of the image is used. A wider angle of view gives a
+ * better estimate of the background luminance. size is sizeof *report. Any thread.
  * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
  */
 luxfer_status luxfer_image_get_glare(luxfer_image *image,
@@ -778,6 +836,18 @@ luxfer_status luxfer_image_get_glare(luxfer_image *image,
                                      double threshold,
                                      luxfer_glare_report *report,
                                      size_t size);
+
+/**
+ * Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB): the unified glare rating and
+ * the daylight glare probability. The image is the view of a level camera. Glare sources are the connected regions of
+ * pixels with a luminance of at least the threshold. For a daylight glare probability, give an angular image of the
+ * half-space ahead, or the vertical illuminance. params NULL: the defaults. size is sizeof *report. Any thread.
+ * LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
+ */
+luxfer_status luxfer_image_rate_glare(luxfer_image *image,
+                                      const luxfer_glare_params *params,
+                                      luxfer_glare_report *report,
+                                      size_t size);
 
 /* ==================================================================================================================
  * Glare of observers

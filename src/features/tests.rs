@@ -373,3 +373,41 @@ fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
     let pixels = inside.iter().map(|p| axes * *p).map(|c| camera.principal + c.truncate() * (camera.focal / c.z));
     assert_eq!(small.enlarged(Face::Ceiling, &camera, pixels), (small, 1.0));
 }
+
+#[test]
+fn the_plane_of_a_camera_that_looks_up_is_the_ceiling() {
+    // Lines on the ceiling along both of its axes, such as the edges of beams. Two negative strokes lie on beams. If
+    // the plane were the back wall, the upper one could lie on the ceiling.
+    let (width, height) = (640, 480);
+    let camera = camera(0.15, 0.7, 0.0, width, height);
+    let project = |p: DVec3| {
+        let c = camera.axes * p;
+        camera.principal + c.truncate() * (camera.focal / c.z)
+    };
+    let mut segments = Vec::new();
+    for k in 0..9 {
+        let at = -1.0 + 0.25 * f64::from(k);
+        segments.push((DVec3::new(at, -1.0, 0.6), DVec3::new(at, -1.0, 1.1), 2));
+        segments.push((DVec3::new(at, -1.0, 1.1), DVec3::new(at, -1.0, 2.5), 2));
+        segments.push((DVec3::new(-1.0, -1.0, 1.6 + at), DVec3::new(1.0, -1.0, 1.6 + at), 0));
+    }
+    let segments: Vec<(Segment, Option<usize>)> =
+        segments.into_iter().map(|(a, b, axis)| (Segment { a: project(a), b: project(b) }, Some(axis))).collect();
+    let stroke = |from: [usize; 2], to: [usize; 2]| -> Vec<u32> {
+        let at = |t: usize, k: usize| (from[k] * (20 - t) + to[k] * t) / 20;
+        (0..=20).map(|t| (at(t, 1) * width + at(t, 0)) as u32).collect()
+    };
+    let strokes = [
+        (stroke([200, 200], [330, 240]), true),
+        (stroke([150, 400], [260, 420]), true),
+        (stroke([420, 300], [500, 340]), true),
+        (stroke([210, 20], [230, 80]), false),
+        (stroke([560, 380], [568, 384]), false),
+    ];
+    let strokes: Vec<PlaneStroke> =
+        strokes.iter().map(|(pixels, positive)| PlaneStroke { pixels, positive: *positive }).collect();
+    let room = RoomView { perspective: &camera, segments: &segments, strokes: &strokes, layout: None };
+    let layout = run_with(&photo(width, height), None, Some(room)).unwrap().layout.unwrap();
+    let plane = [DVec2::new(265.0, 220.0), DVec2::new(205.0, 410.0), DVec2::new(460.0, 320.0)];
+    assert_eq!(layout.shared_face(&camera, plane.into_iter()), Some(Face::Ceiling), "{layout:?}");
+}

@@ -20,6 +20,7 @@ use super::lamps::luxfer_lamps_params;
 use super::params;
 use super::pattern::luxfer_pattern_params;
 use super::pendants::luxfer_pendants_params;
+use super::photometry::luxfer_glare_params;
 use super::placement::luxfer_placement_params;
 use super::plan::luxfer_plan_params;
 use super::rectify::luxfer_rectify_params;
@@ -103,6 +104,8 @@ pub const LUXFER_STRUCT_PENDANTS_PARAMS: luxfer_struct_type = 28;
 pub const LUXFER_STRUCT_MERGE_PARAMS: luxfer_struct_type = 29;
 /// The struct luxfer_gonio_params.
 pub const LUXFER_STRUCT_GONIO_PARAMS: luxfer_struct_type = 30;
+/// The struct luxfer_glare_params.
+pub const LUXFER_STRUCT_GLARE_PARAMS: luxfer_struct_type = 31;
 
 /// Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
 /// struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
@@ -150,6 +153,7 @@ pub unsafe extern "C" fn luxfer_init(
         LUXFER_STRUCT_PENDANTS_PARAMS => params::init::<luxfer_pendants_params>(place.cast(), size),
         LUXFER_STRUCT_MERGE_PARAMS => params::init::<luxfer_merge_params>(place.cast(), size),
         LUXFER_STRUCT_GONIO_PARAMS => params::init::<luxfer_gonio_params>(place.cast(), size),
+        LUXFER_STRUCT_GLARE_PARAMS => params::init::<luxfer_glare_params>(place.cast(), size),
         other => Err(Error::argument(format!("the type of the struct is {other}; it must be a LUXFER_STRUCT_ value"))),
     })
 }

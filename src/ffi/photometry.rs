@@ -6,12 +6,12 @@
 use super::context::luxfer_context;
 use super::geometry::numbers;
 use super::guard::enter;
-use super::image::luxfer_image;
-use super::params::{Report, Versioned, versioned};
+use super::image::{Pixels, luxfer_image};
+use super::params::{self, Report, Versioned, versioned};
 use super::pointer::Out;
 use super::status::luxfer_status;
-use crate::error::{Error, check_range};
-use crate::photometry::glare;
+use crate::error::{Error, Result, check_range};
+use crate::photometry::glare::{self, Projection};
 use crate::photometry::temperature::{self, MAX_KELVIN, MIN_KELVIN, Temperature};
 use glam::DVec3;
 
@@ -40,11 +40,23 @@ pub struct luxfer_glare_report {
     pub unseen_lights: u32,
     /// Reserved; always 0.
     pub reserved: u32,
+    /// Daylight glare probability (Wienold and Christoffersen 2006), at most 1: 5.87e-5 E + 0.0918 log10(1 + sum of
+    /// L² w / (E^1.87 p²)) + 0.16, with the vertical illuminance E in lux and the luminance L, solid angle w and
+    /// position index p of each source. Below 0.35 glare is imperceptible; above 0.45 it is intolerable. The formula
+    /// was found for values from 0.2 to 0.8 and E of at least 380 lux.
+    pub dgp: f64,
+    /// Illuminance in lux at the eye, on a plane across the line of sight, from which dgp was computed: the setting
+    /// vertical_illuminance of luxfer_glare_params or, if that is 0, the illuminance from all pixels of the image. The
+    /// latter is too low, and dgp wrong, if the image does not show the whole half-space ahead.
+    pub vertical_illuminance: f64,
+    /// The field dgp corrected for low light, as versions 1 and 2 of evalglare do: below 1000 lux, it is multiplied by
+    /// 1 / (1 + exp(4 - 0.024 E)).
+    pub dgp_low_light: f64,
 }
 
-versioned!(luxfer_glare_report, [40, 48], {
+versioned!(luxfer_glare_report, [40, 72], {
     Self {
-        struct_size: 48,
+        struct_size: 72,
         sources: 0,
         ugr: 0.0,
         background: 0.0,
@@ -52,8 +64,62 @@ versioned!(luxfer_glare_report, [40, 48], {
         solid_angle: 0.0,
         unseen_lights: 0,
         reserved: 0,
+        dgp: 0.0,
+        vertical_illuminance: 0.0,
+        dgp_low_light: 0.0,
     }
 });
+
+/// The projection of an image: a LUXFER_PROJECTION_ value.
+pub type luxfer_projection = i32;
+/// Perspective: the image of a pinhole camera.
+pub const LUXFER_PROJECTION_PERSPECTIVE: luxfer_projection = 0;
+/// Angular (equidistant) fisheye: the distance of a pixel from the centre of the image is proportional to the angle
+/// between its direction and the line of sight, as in Radiance's views of type a.
+pub const LUXFER_PROJECTION_ANGULAR: luxfer_projection = 1;
+
+/// Settings of the glare rating of an image. Fill them with luxfer_glare_params_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct luxfer_glare_params {
+    /// sizeof(luxfer_glare_params), set by luxfer_glare_params_init.
+    pub struct_size: u32,
+    /// Projection of the image: a LUXFER_PROJECTION_ value; default LUXFER_PROJECTION_PERSPECTIVE.
+    pub projection: luxfer_projection,
+    /// Vertical angle of view of the image in radians, in [0.001, pi - 0.001]; with LUXFER_PROJECTION_ANGULAR in
+    /// [0.001, 2 pi]; default pi / 2. Pixels that are a right angle or more away from the line of sight do not count.
+    pub fov_y: f64,
+    /// Luminance in cd/m² from which on a pixel belongs to a glare source, in [0, 1e12]; 0, the default: five times the
+    /// mean luminance of the image.
+    pub threshold: f64,
+    /// Illuminance in lux at the eye on a plane across the line of sight, in [0, 1e12], for an image that does not show
+    /// the whole half-space ahead; 0, the default: the illuminance from all pixels of the image.
+    pub vertical_illuminance: f64,
+}
+
+versioned!(luxfer_glare_params, [32], {
+    Self {
+        struct_size: 32,
+        projection: LUXFER_PROJECTION_PERSPECTIVE,
+        fov_y: std::f64::consts::FRAC_PI_2,
+        threshold: 0.0,
+        vertical_illuminance: 0.0,
+    }
+});
+
+impl luxfer_glare_params {
+    fn to_params(self) -> Result<glare::Params> {
+        let projection = match self.projection {
+            LUXFER_PROJECTION_PERSPECTIVE => Projection::Perspective,
+            LUXFER_PROJECTION_ANGULAR => Projection::Angular,
+            other => {
+                return Err(Error::argument(format!("projection is {other}; it must be a LUXFER_PROJECTION_ value")));
+            }
+        };
+        let Self { fov_y, threshold, vertical_illuminance, .. } = self;
+        Ok(glare::Params { projection, fov_y, threshold, vertical_illuminance })
+    }
+}
 
 /// Gets the correlated colour temperature of rgb, a linear colour. *kelvin receives the temperature of the nearest
 /// blackbody, in [1000, 20000]; *duv receives the signed distance from this blackbody in the CIE 1960 diagram, positive
@@ -101,11 +167,11 @@ pub unsafe extern "C" fn luxfer_temperature_to_colour(
     })
 }
 
-/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB). The image is the view of a
-/// level camera whose vertical angle of view is fov_y in radians, in [0.001, pi - 0.001]. Glare sources are the
-/// connected regions of pixels with a luminance of at least threshold, in cd/m², in [0, 1e12]. If threshold is 0, five
-/// times the mean luminance of the image is used. A wider angle of view gives a better estimate of the background
-/// luminance. size is sizeof *report. Any thread.
+/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB), as luxfer_image_rate_glare
+/// does. The image is the view of a level camera whose vertical angle of view is fov_y in radians, in [0.001, pi -
+/// 0.001]. Glare sources are the connected regions of pixels with a luminance of at least threshold, in cd/m², in
+/// [0, 1e12]. If threshold is 0, five times the mean luminance of the image is used. A wider angle of view gives a
+/// better estimate of the background luminance. size is sizeof *report. Any thread.
 /// LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_image_get_glare(
@@ -116,17 +182,39 @@ pub unsafe extern "C" fn luxfer_image_get_glare(
     size: usize,
 ) -> luxfer_status {
     enter(image, |object| {
-        let out = Report::new(report, size)?;
-        let rating = glare::rate(object.image(), &glare::Params { fov_y, threshold })?;
-        out.set(luxfer_glare_report {
-            sources: rating.sources.len() as u32,
-            ugr: rating.ugr,
-            background: rating.background,
-            threshold: rating.threshold,
-            solid_angle: rating.sources.iter().map(|s| s.solid_angle).sum(),
-            unseen_lights: object.unseen_lights() as u32,
-            ..luxfer_glare_report::defaults()
-        });
-        Ok(())
+        let params = glare::Params { fov_y, threshold, ..glare::Params::default() };
+        rate(object, &params, Report::new(report, size)?)
     })
+}
+
+/// Rates the discomfort glare of a luminance image in cd/m² (1 channel, or linear RGB): the unified glare rating and
+/// the daylight glare probability. The image is the view of a level camera. Glare sources are the connected regions of
+/// pixels with a luminance of at least the threshold. For a daylight glare probability, give an angular image of the
+/// half-space ahead, or the vertical illuminance. params NULL: the defaults. size is sizeof *report. Any thread.
+/// LUXFER_INVALID_ARGUMENT if the image is not finite or a value is out of range.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn luxfer_image_rate_glare(
+    image: *mut luxfer_image,
+    params: *const luxfer_glare_params,
+    report: *mut luxfer_glare_report,
+    size: usize,
+) -> luxfer_status {
+    enter(image, |object| rate(object, &params::read(params)?.to_params()?, Report::new(report, size)?))
+}
+
+fn rate(image: &Pixels, params: &glare::Params, out: Report<luxfer_glare_report>) -> Result<()> {
+    let rating = glare::rate(image.image(), params)?;
+    out.set(luxfer_glare_report {
+        sources: rating.sources.len() as u32,
+        ugr: rating.ugr,
+        background: rating.background,
+        threshold: rating.threshold,
+        solid_angle: rating.sources.iter().map(|s| s.solid_angle).sum(),
+        unseen_lights: image.unseen_lights() as u32,
+        dgp: rating.dgp,
+        vertical_illuminance: rating.vertical_illuminance,
+        dgp_low_light: rating.dgp_low_light,
+        ..luxfer_glare_report::defaults()
+    });
+    Ok(())
 }

@@ -6,8 +6,12 @@
 //! by its mean luminance would underestimate the glare of emissive textures, which are not uniform (Scheir et al.
 //! 2017). The background luminance is the mean over the remaining pixels, weighted by the contribution of each pixel to
 //! the illuminance at the eye; an image with a wider angle of view makes this mean more accurate. Above the line of
-//! sight, the position index is Guth's; below it, the position index follows Iwata and Tokura (1997), as in
-//! `evalglare`.
+//! sight, the position index is Guth's; below it, the position index follows Iwata and Tokura (1997), as in versions 1
+//! and 2 of `evalglare`.
+//!
+//! The daylight glare probability (Wienold and Christoffersen 2006) uses the same sources and the vertical illuminance
+//! at the eye `Ev` in lux: `DGP = 5.87e-5 Ev + 0.0918 log10(1 + Σ L² ω / (Ev^1.87 p²)) + 0.16`. Versions 1 and 2 of
+//! `evalglare` multiply it by a correction for low light below 1000 lux; version 3 does not.
 
 use crate::error::{Error, Result, check_range};
 use crate::image::{Image, colour, try_vec};
@@ -15,18 +19,45 @@ use crate::maths;
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
-#[derive(Clone, Debug, PartialEq)]
+/// The factors of the daylight glare probability, in the order of the formula, and the exponent of the vertical
+/// illuminance. [paper Wienold and Christoffersen 2006 §5]
+const DGP: [f64; 4] = [5.87e-5, 0.0918, 0.16, 1.87];
+
+/// Vertical illuminance in lux below which the probability is corrected for low light, and the slope and the offset of
+/// the logistic function that corrects it. [convention: evalglare 2]
+const LOW_LIGHT: [f64; 3] = [1000.0, 0.024, 4.0];
+
+/// The projection of an image.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Projection {
+    /// A pinhole camera.
+    #[default]
+    Perspective,
+    /// A fisheye whose distance from the centre is proportional to the angle from the line of sight.
+    Angular,
+}
+
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Params {
-    /// Vertical angle of view of the image in radians, in `(0, π)`. The line of sight is horizontal, through the
-    /// centre of the image.
+    pub projection: Projection,
+    /// Vertical angle of view of the image in radians: in `(0, π)`, or up to `2π` for an angular projection, of which
+    /// the half-space ahead counts. The line of sight is horizontal, through the centre of the image.
     pub fov_y: f64,
     /// A pixel belongs to a glare source if its luminance in cd/m² is at least this value. 0 selects five times the
     /// mean luminance of the image, weighted by solid angle.
     pub threshold: f64,
+    /// Vertical illuminance at the eye in lux; 0: that of the light in the image.
+    pub vertical_illuminance: f64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rating {
+    /// Daylight glare probability, in `[0, 1]`.
+    pub dgp: f64,
+    /// Daylight glare probability corrected for low light.
+    pub dgp_low_light: f64,
+    /// Vertical illuminance at the eye in lux.
+    pub vertical_illuminance: f64,
     /// Unified glare rating. Below 10 glare causes no discomfort; `-∞` means that there is no glare source.
     pub ugr: f64,
     /// Background luminance `Lb` in cd/m².
@@ -61,8 +92,10 @@ struct RegionSums {
 /// # Errors
 /// An image that is empty or not finite; parameters out of range.
 pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
-    check_range("fov_y", params.fov_y, 1e-3, PI - 1e-3)?;
+    let widest = if params.projection == Projection::Angular { 2.0 * PI } else { PI - 1e-3 };
+    check_range("fov_y", params.fov_y, 1e-3, widest)?;
     check_range("threshold", params.threshold, 0.0, 1e12)?;
+    check_range("vertical_illuminance", params.vertical_illuminance, 0.0, 1e12)?;
     if image.width == 0 || image.height == 0 || image.count_non_finite() > 0 {
         return Err(Error::argument("the luminance image is empty or has values that are not finite"));
     }
@@ -72,17 +105,44 @@ pub fn rate(image: &Image, params: &Params) -> Result<Rating> {
         [l, ..] => f64::from(*l).max(0.0),
         [] => 0.0,
     };
-    let view = View::new(width, height, params.fov_y);
+    let view = View::new(width, height, params);
     let threshold = match params.threshold {
         t if t > 0.0 => t,
         _ => default_threshold(width * height, &luminance, &view),
     };
-    let glares = |i: usize| threshold > 0.0 && luminance(i) >= threshold;
+    let glares = |i: usize| threshold > 0.0 && luminance(i) >= threshold && view.pixel(i).1 > 0.0;
     let background = background((0..width * height).filter(|&i| !glares(i)), &luminance, &view);
     let sources = sources([width, height], &luminance, &glares, &view)?;
     let sum: f64 = sources.iter().map(|s| s.luminance * s.luminance * s.solid_angle / (s.position * s.position)).sum();
     let ugr = 8.0 * maths::log10(0.25 / background.max(f64::MIN_POSITIVE) * sum);
-    Ok(Rating { ugr, background, threshold, sources })
+    let vertical_illuminance = match params.vertical_illuminance {
+        lux if lux > 0.0 => lux,
+        _ => vertical_illuminance(width * height, &luminance, &view),
+    };
+    let dgp = daylight_glare_probability(vertical_illuminance, sum);
+    let dgp_low_light = dgp * low_light_correction(vertical_illuminance);
+    Ok(Rating { dgp, dgp_low_light, vertical_illuminance, ugr, background, threshold, sources })
+}
+
+/// Returns the illuminance in lux at the eye, on a plane across the line of sight, of the light in the image.
+fn vertical_illuminance(pixels: usize, luminance: &impl Fn(usize) -> f64, view: &View) -> f64 {
+    (0..pixels).fold(0.0, |lux, i| {
+        let (direction, omega) = view.pixel(i);
+        lux + luminance(i) * omega * -direction.z
+    })
+}
+
+/// Returns the daylight glare probability for a vertical illuminance in lux and the sum `Σ L² ω / p²` of the sources.
+fn daylight_glare_probability(lux: f64, sum: f64) -> f64 {
+    let [per_lux, factor, offset, exponent] = DGP;
+    let contrast = if sum > 0.0 { sum / maths::powf(lux.max(f64::MIN_POSITIVE), exponent) } else { 0.0 };
+    (per_lux * lux + factor * maths::log10(1.0 + contrast.min(f64::MAX)) + offset).min(1.0)
+}
+
+/// Returns the factor of the daylight glare probability for low light.
+fn low_light_correction(lux: f64) -> f64 {
+    let [limit, slope, shift] = LOW_LIGHT;
+    if lux < limit { 1.0 / (1.0 + maths::exp(shift - slope * lux)) } else { 1.0 }
 }
 
 /// Returns five times the mean luminance of the image, weighted by the solid angles of its pixels.
@@ -150,28 +210,53 @@ fn sources(
     Ok(sources)
 }
 
-/// The view of the image: a pinhole camera that looks along -z, with y up.
+/// The view of the image: a camera that looks along -z, with y up.
 struct View {
+    projection: Projection,
     width: usize,
     centre: [f64; 2],
-    /// Side of a pixel on the image plane at distance 1.
+    /// Side of a pixel on the image plane at distance 1, or the angle that it covers in an angular projection.
     pixel: f64,
 }
 
 impl View {
-    fn new(width: usize, height: usize, fov_y: f64) -> Self {
-        let pixel = 2.0 * maths::tan(fov_y / 2.0) / height as f64;
-        Self { width, centre: [width as f64 / 2.0, height as f64 / 2.0], pixel }
+    fn new(width: usize, height: usize, params: &Params) -> Self {
+        let extent = match params.projection {
+            Projection::Perspective => 2.0 * maths::tan(params.fov_y / 2.0),
+            Projection::Angular => params.fov_y,
+        };
+        let centre = [width as f64 / 2.0, height as f64 / 2.0];
+        Self { projection: params.projection, width, centre, pixel: extent / height as f64 }
     }
 
-    /// Returns the unit direction of a pixel's centre, and the exact solid angle of the pixel.
+    /// Returns the unit direction of a pixel's centre, and the solid angle of the pixel. The solid angle of a pixel
+    /// that is not in the half-space ahead is 0.
     fn pixel(&self, i: usize) -> (DVec3, f64) {
         let x = ((i % self.width) as f64 - self.centre[0]) * self.pixel;
         let y = (self.centre[1] - (i / self.width) as f64) * self.pixel;
+        match self.projection {
+            Projection::Perspective => self.on_plane(x, y),
+            Projection::Angular => self.on_angles(x + self.pixel / 2.0, y - self.pixel / 2.0),
+        }
+    }
+
+    /// Returns direction and exact solid angle of a pixel of a perspective image; x and y are its upper left corner.
+    fn on_plane(&self, x: f64, y: f64) -> (DVec3, f64) {
         let corner = |x: f64, y: f64| maths::atan(x * y / (1.0 + x * x + y * y).sqrt());
         let (x1, y0) = (x + self.pixel, y - self.pixel);
         let omega = corner(x1, y) - corner(x, y) - corner(x1, y0) + corner(x, y0);
         (DVec3::new(x + self.pixel / 2.0, y - self.pixel / 2.0, -1.0).normalize(), omega)
+    }
+
+    /// Returns direction and solid angle of a pixel of an angular image; x and y are its centre.
+    fn on_angles(&self, x: f64, y: f64) -> (DVec3, f64) {
+        let angle = maths::hypot(x, y);
+        if angle >= PI / 2.0 {
+            return (DVec3::NEG_Z, 0.0);
+        }
+        let per_angle = if angle > 0.0 { maths::sin(angle) / angle } else { 1.0 };
+        let direction = DVec3::new(x * per_angle, y * per_angle, -maths::cos(angle));
+        (direction, per_angle * self.pixel * self.pixel)
     }
 }
 
@@ -209,7 +294,7 @@ mod tests {
     #[test]
     fn one_lamp_is_the_formula() {
         let fov_y = 1.0f64;
-        let params = Params { fov_y, threshold: 1000.0 };
+        let params = Params { fov_y, threshold: 1000.0, ..Params::default() };
         let rating = rate(&view(200, [90, 90], 20, 10_000.0), &params).unwrap();
         // The lamp covers a tenth of the view's side, on the line of sight. Its solid angle is `ω = 4 asin(a² / (1 +
         // a²))`, where `a` is half the lamp's side on the image plane at distance 1.
@@ -231,7 +316,7 @@ mod tests {
 
     #[test]
     fn glare_falls_away_from_the_line_of_sight() {
-        let params = Params { fov_y: 1.4, threshold: 1000.0 };
+        let params = Params { fov_y: 1.4, threshold: 1000.0, ..Params::default() };
         let ugr = |at: [usize; 2]| rate(&view(201, at, 11, 2e4), &params).unwrap().ugr;
         let (ahead, above, beside, below) = (ugr([95, 95]), ugr([95, 15]), ugr([15, 95]), ugr([95, 175]));
         assert!(ahead > above + 3.0 && ahead > beside + 2.0 && ahead > below + 2.0, "{ahead} {above} {beside} {below}");
@@ -242,12 +327,67 @@ mod tests {
 
     #[test]
     fn dark_images_have_no_source_and_bad_images_are_refused() {
-        let dark = rate(&Image::new(8, 8, 3).unwrap(), &Params { fov_y: 1.0, threshold: 0.0 }).unwrap();
+        let params = |fov_y: f64| Params { fov_y, ..Params::default() };
+        let dark = rate(&Image::new(8, 8, 3).unwrap(), &params(1.0)).unwrap();
         assert!(dark.ugr == f64::NEG_INFINITY && dark.sources.is_empty());
-        let even = rate(&Image::from_fn(8, 8, |_, _| [50.0]).unwrap(), &Params { fov_y: 1.0, threshold: 0.0 }).unwrap();
+        // Without light, only the offset and the correction for low light are left.
+        assert!((dark.dgp, dark.vertical_illuminance) == (0.16, 0.0));
+        assert!((dark.dgp_low_light - 0.16 / (1.0 + 4f64.exp())).abs() < 1e-12);
+        let even = rate(&Image::from_fn(8, 8, |_, _| [50.0]).unwrap(), &params(1.0)).unwrap();
         assert!(even.sources.is_empty() && (even.background - 50.0).abs() < 1e-9);
         let bad = Image::from_fn(2, 2, |_, _| [f32::NAN]).unwrap();
-        assert!(rate(&bad, &Params { fov_y: 1.0, threshold: 0.0 }).is_err());
-        assert!(rate(&Image::new(2, 2, 1).unwrap(), &Params { fov_y: 4.0, threshold: 0.0 }).is_err());
+        assert!(rate(&bad, &params(1.0)).is_err());
+        let empty = Image::new(2, 2, 1).unwrap();
+        assert!(rate(&empty, &params(4.0)).is_err());
+        assert!(rate(&empty, &Params { projection: Projection::Angular, ..params(7.0) }).is_err());
+        assert!(rate(&empty, &Params { vertical_illuminance: -1.0, ..params(1.0) }).is_err());
+    }
+
+    #[test]
+    fn an_even_fisheye_is_a_hemisphere() {
+        let image = Image::from_fn(400, 400, |_, _| [100.0]).unwrap();
+        let params = Params { projection: Projection::Angular, fov_y: PI, ..Params::default() };
+        let rating = rate(&image, &params).unwrap();
+        let view = View::new(400, 400, &params);
+        let omega: f64 = (0..160_000).map(|i| view.pixel(i).1).sum();
+        assert!((omega / (2.0 * PI) - 1.0).abs() < 1e-3, "{omega}");
+        assert!((rating.vertical_illuminance / (100.0 * PI) - 1.0).abs() < 1e-4, "{}", rating.vertical_illuminance);
+        assert!((rating.background - 100.0).abs() < 1e-9 && rating.sources.is_empty());
+    }
+
+    #[test]
+    fn dgp_is_the_formula() {
+        // A disc of 10° around the line of sight in an angular image, whose background is too bright for a correction.
+        let (side, lamp, rest) = (600, 40_000.0f32, 500.0f32);
+        let angle = |x: usize, y: usize| {
+            let [x, y] = [x, y].map(|v| (v as f64 + 0.5 - 300.0) * PI / 600.0);
+            x.hypot(y)
+        };
+        let cap = 5f64.to_radians();
+        let image = Image::from_fn(side, side, |x, y| [if angle(x, y) < cap { lamp } else { rest }]).unwrap();
+        let angular = Params { projection: Projection::Angular, fov_y: PI, threshold: 2000.0, ..Params::default() };
+        let rating = rate(&image, &angular).unwrap();
+        let omega = 2.0 * PI * (1.0 - cap.cos());
+        let lux = PI * (500.0 + 39_500.0 * cap.sin().powi(2));
+        assert!((rating.vertical_illuminance / lux - 1.0).abs() < 2e-3, "{} {lux}", rating.vertical_illuminance);
+        let dgp = |lux: f64| 5.87e-5 * lux + 0.0918 * (1.0 + 1.6e9 * omega / lux.powf(1.87)).log10() + 0.16;
+        assert!((rating.dgp - dgp(lux)).abs() < 5e-4, "{} {}", rating.dgp, dgp(lux));
+        // A measured illuminance replaces that of the image, and low light is corrected.
+        let measured = rate(&image, &Params { vertical_illuminance: 200.0, ..angular }).unwrap();
+        let share = (0.024f64 * 200.0 - 4.0).exp();
+        let expected = dgp(200.0) * share / (1.0 + share);
+        assert!((measured.dgp - dgp(200.0)).abs() < 1e-3, "{} {}", measured.dgp, dgp(200.0));
+        assert!((measured.dgp_low_light - expected).abs() < 1e-3, "{} {expected}", measured.dgp_low_light);
+        assert!(rating.dgp_low_light == rating.dgp);
+        assert!(measured.vertical_illuminance == 200.0 && measured.ugr == rating.ugr);
+    }
+
+    #[test]
+    fn projections_agree_on_a_small_view() {
+        let flat = Params { fov_y: 0.2, threshold: 1000.0, ..Params::default() };
+        let image = view(200, [120, 40], 20, 10_000.0);
+        let one = rate(&image, &flat).unwrap();
+        let other = rate(&image, &Params { projection: Projection::Angular, ..flat }).unwrap();
+        assert!((one.ugr - other.ugr).abs() < 0.05 && (one.dgp - other.dgp).abs() < 2e-3, "{one:?} {other:?}");
     }
 }

@@ -309,6 +309,7 @@ def photometry() -> Scenario:
     s.call("colour_to_temperature", s.context, array("double", 1, 0.9, 0.7), ROOM, ROOM)
     s.call("temperature_to_colour", s.context, 3000.0, 0.0, ROOM)
     s.call("image_get_glare", s.image(32, 24), 1.0, 0.0, *report("glare_report"))
+    s.call("image_rate_glare", s.image(32, 24), struct("glare_params", projection=1, fov_y=3.0), *report("glare_report"))
     s.call("scene_get_glare", s.make("scene_create", s.context), array("float", 0, 0, 0, 0, 0, 1), 1, 0, 16, 1, ROOM, 0)
     s.make("image_false_colour", s.image(32, 24), struct("false_colour_params", maximum=2.0))
     led, white = array("double", 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 0.8), array("double", 0.5, 0.4, 0.3)

@@ -487,6 +487,12 @@ void lights_have_names() {
     CHECK(rgb[0] > 0.99 && rgb[0] < 1.01 && rgb[2] > 0.99 && rgb[2] < 1.01);
     CHECK_ERROR(luxfer::colour_temperature(context, {0, 0, 0}), LUXFER_DEGENERATE);
     CHECK(ok(luxfer::glare(new_image(context), 1)).threshold >= 0);
+    luxfer::GlareParams fisheye;
+    fisheye.projection = LUXFER_PROJECTION_ANGULAR;
+    fisheye.vertical_illuminance = 2000;
+    CHECK(ok(luxfer::glare(new_image(context), fisheye)).dgp > 0.27);
+    fisheye.projection = 7;
+    CHECK_ERROR(luxfer::glare(new_image(context), fisheye), LUXFER_INVALID_ARGUMENT);
     const std::array<luxfer_observer, 2> observers = {{{{0, 0, 0}, {0, 0, 1}}, {{0, 0, 0}, {1, 0, 0}}}};
     const luxfer::Scene dark = ok(luxfer::Scene::create(context));
     const std::vector<luxfer_observer_glare> ratings = ok(luxfer::glare(dark, observers, 16));

@@ -11,6 +11,7 @@ namespace luxfer {
 using LampsParams = Params<luxfer_lamps_params, LUXFER_STRUCT_LAMPS_PARAMS>;
 using ImportanceParams = Params<luxfer_importance_params, LUXFER_STRUCT_IMPORTANCE_PARAMS>;
 using GonioParams = Params<luxfer_gonio_params, LUXFER_STRUCT_GONIO_PARAMS>;
+using GlareParams = Params<luxfer_glare_params, LUXFER_STRUCT_GLARE_PARAMS>;
 using FalseColourParams = Params<luxfer_false_colour_params, LUXFER_STRUCT_FALSE_COLOUR_PARAMS>;
 using LuminaireParams = Params<luxfer_luminaire_params, LUXFER_STRUCT_LUMINAIRE_PARAMS>;
 using PendantsParams = Params<luxfer_pendants_params, LUXFER_STRUCT_PENDANTS_PARAMS>;
@@ -253,6 +254,11 @@ inline Result<std::vector<luxfer_observer_glare>> glare(const Scene &scene, Span
 inline Result<luxfer_glare_report> glare(const Image &image, double fov_y, double threshold = 0) {
     return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_get_glare, image.get(), fov_y,
                                                   threshold);
+}
+
+/// The unified glare rating and the daylight glare probability of a luminance image, perspective or fisheye.
+inline Result<luxfer_glare_report> glare(const Image &image, const luxfer_glare_params &params) {
+    return detail::get_value<luxfer_glare_report>(image.context().get(), luxfer_image_rate_glare, image.get(), &params);
 }
 
 /// Shows an image in false colours, with a scale bar.

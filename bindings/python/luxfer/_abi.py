@@ -57,6 +57,7 @@ LUXFER_STRUCT_DEMO_PHOTO_PARAMS = 27
 LUXFER_STRUCT_PENDANTS_PARAMS = 28
 LUXFER_STRUCT_MERGE_PARAMS = 29
 LUXFER_STRUCT_GONIO_PARAMS = 30
+LUXFER_STRUCT_GLARE_PARAMS = 31
 LUXFER_VIEW_BOTTOM_UP = 1
 LUXFER_SAMPLE_U8 = 0
 LUXFER_SAMPLE_U16 = 1
@@ -262,6 +263,8 @@ LUXFER_GROUP_BY_TYPE = 5
 LUXFER_AIM_MAX_LUMINANCE = 0
 LUXFER_AIM_MIN_LUMINANCE = 1
 LUXFER_AIM_RADIANCE = 2
+LUXFER_PROJECTION_PERSPECTIVE = 0
+LUXFER_PROJECTION_ANGULAR = 1
 LUXFER_SCALE_LINEAR = 0
 LUXFER_SCALE_LOGARITHMIC = 1
 LUXFER_UNIT_LUMINANCE = 0
@@ -1324,8 +1327,25 @@ class luxfer_glare_report(Structure):
         ("solid_angle", c_double),
         ("unseen_lights", c_uint32),
         ("reserved", c_uint32),
+        ("dgp", c_double),
+        ("vertical_illuminance", c_double),
+        ("dgp_low_light", c_double),
     ]
     result = types.GlareReport
+
+
+class luxfer_glare_params(Structure):
+    """Settings of the glare rating of an image."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("projection", c_int32),
+        ("fov_y", c_double),
+        ("threshold", c_double),
+        ("vertical_illuminance", c_double),
+    ]
+    enumerations: dict[str, type] = {"projection": types.Projection}
+    struct_type = LUXFER_STRUCT_GLARE_PARAMS
 
 
 class luxfer_observer(Structure):
@@ -1832,6 +1852,7 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_colour_to_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("rgb", POINTER(c_double)), ("kelvin", POINTER(c_double)), ("duv", POINTER(c_double))]),
     "luxfer_temperature_to_colour": (c_int32, [("context", POINTER(luxfer_context)), ("kelvin", c_double), ("duv", c_double), ("rgb", POINTER(c_double))]),
     "luxfer_image_get_glare": (c_int32, [("image", POINTER(luxfer_image)), ("fov_y", c_double), ("threshold", c_double), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
+    "luxfer_image_rate_glare": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_glare_params)), ("report", POINTER(luxfer_glare_report)), ("size", c_size_t)]),
     "luxfer_scene_get_glare": (c_int32, [("scene", POINTER(luxfer_scene)), ("observers", POINTER(luxfer_observer)), ("count", c_size_t), ("observer_stride", c_size_t), ("samples", c_uint32), ("seed", c_uint64), ("ratings", POINTER(luxfer_observer_glare)), ("rating_stride", c_size_t)]),
     "luxfer_scene_get_distribution": (c_int32, [("scene", POINTER(luxfer_scene)), ("meshes", POINTER(c_uint32)), ("count", c_size_t), ("params", POINTER(luxfer_gonio_params)), ("distribution", POINTER(POINTER(luxfer_distribution))), ("report", POINTER(luxfer_gonio_report)), ("size", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),

@@ -12,7 +12,7 @@ from . import _abi, _params
 from ._handle import Handle, call
 from ._pointers import POINTER
 from .image import Image, image_of, made
-from .types import DistributionFormat, DistributionReport, GlareReport, Mixture, Preset, TemperatureFit
+from .types import DistributionFormat, DistributionReport, GlareReport, Mixture, Preset, Projection, TemperatureFit
 
 if TYPE_CHECKING:
     from .context import Context
@@ -103,11 +103,30 @@ def colour_of_temperature(context: Context, kelvin: float, duv: float = 0) -> tu
     return rgb[0], rgb[1], rgb[2]
 
 
-def glare(context: Context, image: ImageLike, fov_y: float, threshold: float = 0) -> GlareReport:
-    """The unified glare rating of a luminance image in cd/m². Pixels above threshold are glare sources; 0 means five
-    times the mean luminance."""
+def glare(
+    context: Context,
+    image: ImageLike,
+    fov_y: float,
+    threshold: float = 0,
+    projection: Projection | str = Projection.PERSPECTIVE,
+    vertical_illuminance: float = 0,
+) -> GlareReport:
+    """The unified glare rating and the daylight glare probability of a luminance image in cd/m². Pixels above
+    threshold are glare sources; 0 means five times the mean luminance. projection is "perspective" or "angular", a
+    fisheye whose height shows the angle fov_y. The daylight glare probability needs an image of the half-space ahead,
+    or the vertical_illuminance at the eye in lux.
+
+    >>> sky = np.full((100, 100), 1000, np.float32)
+    >>> report = glare(context, sky, np.pi, projection="angular")
+    >>> round(report.vertical_illuminance), round(report.dgp, 3)
+    (3142, 0.344)
+    """
+    settings = {"fov_y": fov_y, "threshold": threshold, "projection": projection}
+    params = _params.fill(
+        _abi.luxfer_glare_params, {**settings, "vertical_illuminance": vertical_illuminance}, []
+    )
     report = _abi.luxfer_glare_report()
-    call(context, "luxfer_image_get_glare", image_of(context, image), fov_y, threshold, report, ctypes.sizeof(report))
+    call(context, "luxfer_image_rate_glare", image_of(context, image), params, report, ctypes.sizeof(report))
     return cast(GlareReport, _params.report(report))
 
 

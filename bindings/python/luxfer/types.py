@@ -767,6 +767,16 @@ class Aim(IntEnum):
     PlacementParams.radiance."""
 
 
+class Projection(IntEnum):
+    """The projection of an image."""
+
+    PERSPECTIVE = 0
+    """Perspective: the image of a pinhole camera."""
+    ANGULAR = 1
+    """Angular (equidistant) fisheye: the distance of a pixel from the centre of the image is proportional to
+    the angle between its direction and the line of sight, as in Radiance's views of type a."""
+
+
 class Scale(IntEnum):
     """The scale that maps values to colours."""
 
@@ -2393,6 +2403,35 @@ class GlareReport:
     without luminous opening. They are invisible in the image, and ugr leaves them out. Known only for images of
     luxfer_render_get_image and luxfer_render_get_layer; 0 for other images. If these lights include luminaires,
     the scene has WarningCode.NOT_IN_PICTURE."""
+    dgp: float
+    """Daylight glare probability (Wienold and Christoffersen 2006), at most 1: 5.87e-5 E + 0.0918 log10(1 + sum
+    of L² w / (E^1.87 p²)) + 0.16, with the vertical illuminance E in lux and the luminance L, solid angle w and
+    position index p of each source. Below 0.35 glare is imperceptible; above 0.45 it is intolerable. The
+    formula was found for values from 0.2 to 0.8 and E of at least 380 lux."""
+    vertical_illuminance: float
+    """Illuminance in lux at the eye, on a plane across the line of sight, from which dgp was computed: the
+    setting vertical_illuminance of GlareParams or, if that is 0, the illuminance from all pixels of the image.
+    The latter is too low, and dgp wrong, if the image does not show the whole half-space ahead."""
+    dgp_low_light: float
+    """The field dgp corrected for low light, as versions 1 and 2 of evalglare do: below 1000 lux, it is
+    multiplied by 1 / (1 + exp(4 - 0.024 E))."""
+
+
+class GlareParams(TypedDict, total=False):
+    """Settings of the glare rating of an image."""
+
+    projection: Projection | str | int
+    """Projection of the image: Projection; default Projection.PERSPECTIVE."""
+    fov_y: float
+    """Vertical angle of view of the image in radians, in [0.001, pi - 0.001]; with Projection.ANGULAR in
+    [0.001, 2 pi]; default pi / 2. Pixels that are a right angle or more away from the line of sight do not
+    count."""
+    threshold: float
+    """Luminance in cd/m² from which on a pixel belongs to a glare source, in [0, 1e12]; 0, the default: five
+    times the mean luminance of the image."""
+    vertical_illuminance: float
+    """Illuminance in lux at the eye on a plane across the line of sight, in [0, 1e12], for an image that does
+    not show the whole half-space ahead; 0, the default: the illuminance from all pixels of the image."""
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@
 //! the lamps of the whole photo ([`sites`]). The law found in the whole exemplar with the threshold `min_regularity` is
 //! kept unless another law scores clearly higher.
 
-mod evidence;
+pub mod evidence;
 pub mod sites;
 
 use super::exemplar::Exemplar;
@@ -195,11 +195,12 @@ impl Analysis {
         proposals.iter_mut().for_each(|p| p.score = score(p.law));
         proposals.retain(|p| p.score.is_finite());
         let without_period = Proposal::without_period(lattice::without_period(exemplar, extent::of(exemplar)));
-        let own = match exemplar.is_luminous_ceiling() {
-            true if keep_correlated(own, &mut proposals, whole) => own,
-            true => best_of(&proposals).filter(|p| p.score > SCORE_WITHOUT_PERIOD).unwrap_or(without_period),
-            false => own,
+        let may_stay = match exemplar.is_luminous_ceiling() {
+            true => keep_correlated(own, &mut proposals, whole),
+            false => keep_shown(own, &mut proposals, exemplar, &evidence),
         };
+        let best = || best_of(&proposals).filter(|p| p.score > SCORE_WITHOUT_PERIOD);
+        let own = if may_stay { own } else { best().unwrap_or(without_period) };
 
         // Make the periods of lattices exactly parallel to the axes of the unwarped image, if the lattice then predicts
         // the lamps nearly as well.
@@ -320,6 +321,17 @@ fn keep_correlated(own: Proposal, proposals: &mut Vec<Proposal>, whole: &Correla
     let is_kept = |p: &Proposal| correlation(p) >= MIN_PANE_CORRELATION * highest;
     proposals.retain(is_kept);
     matches!(own.law, Law::Whole(_) | Law::Free) || is_kept(&own)
+}
+
+/// Removes the lattices of which the lamps show only one period, or none. Returns whether `own` may stay: true if it is
+/// no such lattice. Autocorrelation finds such periods in photos with few lamps, from the noise in their outlines.
+fn keep_shown(own: Proposal, proposals: &mut Vec<Proposal>, exemplar: &Exemplar, evidence: &Evidence) -> bool {
+    let is_shown = |p: &Proposal| match p.law {
+        Law::Lattice(_) => Sites::new(exemplar, &evidence.whole, p.law).is_none_or(|s| s.show_both_periods(evidence)),
+        _ => true,
+    };
+    proposals.retain(is_shown);
+    is_shown(&own)
 }
 
 /// The proposal with the highest score.

@@ -41,7 +41,8 @@ pub struct Site {
     pub unmarked: f64,
     pub missing: f64,
     /// `holes`: the part of `missing` that lies between lamps of the site, in photo pixels. `hole_count`: the number of
-    /// positions between lamps of the site at which a predicted lamp is missing.
+    /// positions between lamps of the site at which a predicted lamp is missing. If the site has one lamp, the lamps of
+    /// all sites count instead.
     pub holes: f64,
     pub hole_count: usize,
     /// First and last cell, along both periods, in which the pattern continues. Cell (0, 0) holds `at`. If predicted
@@ -172,8 +173,12 @@ impl Sites {
         };
         let (shining, dark): (Vec<DVec2>, Vec<DVec2>) = empty.into_iter().partition(shines);
 
-        // A dark position is a hole if it lies between the first and the last lamp along both periods. A dark position
+        // A dark position is a hole if it lies between the first and the last lamp along both periods. A single lamp
+        // shows no repetition, so its dark positions among the lamps of all sites are holes too. A dark position
         // before the first or after the last lamp along a period ends the pattern on that side.
+        let bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (first, last) = all.iter().fold(bounds, |(a, b), l| (a.min(l.centre), b.max(l.centre)));
+        let is_among_lamps = |p: DVec2| lamps.len() == 1 && p.cmpge(first).all() && p.cmple(last).all();
         let lit = lamps.iter().map(|l| l.centre).chain(shining.iter().copied()).map(|p| self.cell(at, p));
         let (low, high) = lit.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), c| (a.min(c), b.max(c)));
         let mut cells = [DVec2::NEG_INFINITY, DVec2::INFINITY];
@@ -183,7 +188,7 @@ impl Sites {
             let (cell, pixels) = (self.cell(at, p), pixels(p));
             let (before, after) = (cell.cmplt(low), cell.cmpgt(high));
             missing += pixels;
-            if !(before | after).any() {
+            if !(before | after).any() || is_among_lamps(p) {
                 (holes, hole_count) = (holes + pixels, hole_count + 1);
             }
             cells = [DVec2::select(before, low, cells[0]), DVec2::select(after, high, cells[1])];
@@ -248,14 +253,12 @@ impl Sites {
             true => (predicted + site.shown, all + site.shown + site.missing),
             false => (predicted, all + site.shown),
         });
-        let off = |lamp: &MeasuredLamp, site: &Site| self.residual(lamp.centre - site.at).abs();
-        let on_lamp = |lamp: &MeasuredLamp, site: &Site| site.lamps[0].size / 2.0 + lamp.blur - off(lamp, site);
-        let at_centre = |lamp: &MeasuredLamp, site: &Site| MAX_OFF_SITE * self.shortest + lamp.blur - off(lamp, site);
-        let is_led_to = |lamp: &MeasuredLamp, slack: &dyn Fn(&MeasuredLamp, &Site) -> DVec2| {
-            self.list.iter().any(|site| slack(lamp, site).cmpge(DVec2::ZERO).all())
+        let is_led_to = |lamp: &MeasuredLamp, leads: fn(&Self, &MeasuredLamp, &Site) -> bool| {
+            self.list.iter().any(|site| leads(self, lamp, site))
         };
-        let completed = evidence.completed.iter().map(|lamp| (lamp, is_led_to(lamp, &at_centre)));
-        let cut = completed.clone().chain(evidence.parts.iter().map(|part| (part, is_led_to(part, &on_lamp))));
+        let completed = evidence.completed.iter().map(|lamp| (lamp, is_led_to(lamp, Self::leads_to_centre)));
+        let parts = evidence.parts.iter().map(|part| (part, is_led_to(part, Self::leads_to_part)));
+        let cut = completed.clone().chain(parts);
         let (predicted, all) = cut.fold((predicted, all), |(predicted, all), (lamp, is_predicted)| {
             (predicted + if is_predicted { lamp.weight } else { 0.0 }, all + lamp.weight)
         });
@@ -265,5 +268,38 @@ impl Sites {
             return 0.0;
         }
         predicted / all * (1.0 - self.list.len() as f64 / lamps as f64)
+    }
+
+    /// Whether whole steps of the lattice lead from a site to the centre of a lamp.
+    fn leads_to_centre(&self, lamp: &MeasuredLamp, site: &Site) -> bool {
+        let slack = MAX_OFF_SITE * self.shortest + lamp.blur;
+        self.residual(lamp.centre - site.at).abs().cmple(slack).all()
+    }
+
+    /// Whether whole steps of the lattice lead from a site to a position on the visible part of a lamp.
+    fn leads_to_part(&self, part: &MeasuredLamp, site: &Site) -> bool {
+        let slack = site.lamps[0].size / 2.0 + part.blur;
+        self.residual(part.centre - site.at).abs().cmple(slack).all()
+    }
+
+    /// Whether steps between lamps of one site, whole or cut, show both periods of a lattice: two such steps are not
+    /// parallel.
+    pub fn show_both_periods(&self, evidence: &Evidence) -> bool {
+        let mut direction: Option<DVec2> = None;
+        for site in &self.list {
+            let completed = evidence.completed.iter().filter(|lamp| self.leads_to_centre(lamp, site));
+            let parts = evidence.parts.iter().filter(|part| self.leads_to_part(part, site));
+            let steps = site.lamps[1..].iter().chain(completed).chain(parts).map(|lamp| {
+                let step = self.to_cells * (lamp.centre - site.lamps[0].centre);
+                step.round()
+            });
+            for step in steps.filter(|step| *step != DVec2::ZERO) {
+                let first = *direction.get_or_insert(step);
+                if first.perp_dot(step) != 0.0 {
+                    return true;
+                }
+            }
+        }
+        false
     }
 }

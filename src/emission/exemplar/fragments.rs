@@ -5,7 +5,7 @@
 //! lamps. A piece of light of any other kind is a fragment if two conditions hold:
 //!
 //! - It covers far fewer photo pixels than a lamp of the smallest major kind would cover in its place.
-//! - It lies close to another light, or only few pieces are similar to it.
+//! - It lies close to another light, or it covers few photo pixels and only few pieces are similar to it.
 //!
 //! A fragment gets the role [`Role::Cut`]: it counts as light in the statistics, but the texture does not show it.
 
@@ -28,6 +28,9 @@ const MAX_GAP: f64 = 0.35;
 /// A group of at least this many similar small pieces counts as a kind of lamps; only the pieces close to other lights
 /// are then fragments. [judged on 20 photos]
 const MIN_KIND_COUNT: usize = 3;
+/// A piece of at least this many photo pixels has a clear shape. It is a fragment only if it is close to another light,
+/// however few pieces are similar to it: a downlight among large panels is a lamp. [bench photos:tune]
+const MAX_SPECK: f64 = 150.0;
 
 /// Gives the fragments among the whole lamps the role [`Role::Cut`].
 pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], to_photo: PhotoMap) {
@@ -52,7 +55,8 @@ pub fn demote(components: &Components, roles: &mut [Role], photo_area: &[f64], t
             let expected = lamp.size.element_product() * LocalMap::new(Some(to_photo), piece.centre).area();
             let is_small = piece.weight < MAX_FRAGMENT * expected;
             let max_distance = MAX_GAP * lamp.size.max_element();
-            if is_small && (kind.len() < MIN_KIND_COUNT || has_neighbour(components, piece.component, max_distance)) {
+            let is_rare = kind.len() < MIN_KIND_COUNT && piece.weight < MAX_SPECK;
+            if is_small && (is_rare || has_neighbour(components, piece.component, max_distance)) {
                 roles[piece.component] = Role::Cut;
             }
         }

@@ -1,5 +1,6 @@
 //! The extent of the exemplar as a period, for lights that have no period of their own.
 
+use super::copies;
 use super::law::Law;
 use crate::emission::agreement::statistics;
 use crate::emission::exemplar::Exemplar;
@@ -125,21 +126,26 @@ pub fn has_few_lamps(exemplar: &Exemplar, extent: DVec2) -> bool {
 ///
 /// A single lamp in a photo shows no spacing, so both its periods have the same length. The exceptions: [`min_cell`] is
 /// longer along one axis, or does not fit into `extent`.
+///
+/// Where lamps of adjacent repetitions would lie nearer to each other than lamps in the photo do,
+/// [`copies::keep_distances`] changes the periods.
 fn whole_exemplar(exemplar: &Exemplar, extent: DVec2) -> DVec2 {
     let lamps = &exemplar.components.list;
     let lit: usize =
         lamps.iter().zip(&exemplar.roles).filter(|(_, role)| **role != Role::Cut).map(|(lamp, _)| lamp.area).sum();
     let share = (lit as f64 / exemplar.lit_share / extent.element_product()).min(1.0);
     let is_framed = exemplar.to_photo.is_some() && exemplar.pieces().count() == 1;
+    let min_cell = min_cell(exemplar);
     if share > 1.0 - 1e-6 && !is_framed {
-        return of_rows(exemplar);
+        return copies::keep_distances(exemplar, of_rows(exemplar), min_cell);
     }
-    let min_share = min_cell(exemplar) / extent;
+    let min_share = min_cell / extent;
     if is_framed && min_share.max_element() <= 1.0 {
         return DVec2::splat((share * extent.element_product()).sqrt()).max(min_share * extent);
     }
     let x = (share / min_share.y.max(share.sqrt())).min(1.0).max(min_share.x);
-    extent * DVec2::new(x, (share / x).min(1.0).max(min_share.y))
+    let cell = extent * DVec2::new(x, (share / x).min(1.0).max(min_share.y));
+    copies::keep_distances(exemplar, cell, min_cell)
 }
 
 /// The smallest period, along x and along y, at which the copied lamps of adjacent repetitions stay apart, in unwarped

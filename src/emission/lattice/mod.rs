@@ -15,6 +15,7 @@ pub mod basis;
 pub mod border_sites;
 pub mod cells;
 pub mod centring;
+pub mod copies;
 pub mod correlation;
 pub mod extent;
 pub mod kind_check;

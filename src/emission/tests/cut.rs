@@ -211,3 +211,18 @@ fn gaps_between_lamps_stay() {
     let lamps = result.luminaires.iter().map(|lamp| lamp.area).sum::<f64>() / 140.0;
     assert!((0.8..0.97).contains(&(lamps / cells)), "{lamps} lamps in {cells} cells");
 }
+
+#[test]
+fn a_small_lamp_among_large_ones_is_no_fragment_unless_it_lies_beside_one() {
+    let is_panel = |x: f64, y: f64| {
+        [(60.0, 60.0), (260.0, 60.0), (60.0, 200.0)].iter().any(|(u, v)| (x - u).abs() < 20.0 && (y - v).abs() < 20.0)
+    };
+    let small_lamps = |disc: DVec2| {
+        let design = Design::new(360, 260, |x, y| is_panel(x, y) || disc.distance(DVec2::new(x, y)) < 8.0);
+        let result = continued(&design);
+        assert!(result.luminaires.iter().any(|lamp| lamp.area > 1500.0));
+        inner(&result.luminaires, 500, 400).iter().filter(|lamp| lamp.area < 250.0).count()
+    };
+    assert!(small_lamps(DVec2::new(260.0, 200.0)) >= 1);
+    assert_eq!(small_lamps(DVec2::new(90.0, 60.0)), 0);
+}

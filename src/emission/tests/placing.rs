@@ -1,6 +1,7 @@
 //! Tests of where the lamps of a pattern lie: offsets, centred lattices, tileable textures, and zones without lamps.
 
 use super::*;
+use crate::emission::lattice::copies;
 
 #[test]
 fn an_offset_shifts_the_lattice_and_the_copy() {
@@ -63,6 +64,31 @@ fn repetitions_of_the_exemplar_keep_its_rows_apart() {
     };
     assert!(result.luminaires.len() >= 30, "{}", result.luminaires.len());
     assert!(result.luminaires.iter().all(|lamp| phase(lamp.centre.y) < 1.0));
+}
+
+/// If scattered lamps repeat as a whole with these periods, the lowest lamp lies beside the highest one of the next
+/// copy. Copies of another width, and a slightly larger area, keep the lamps apart.
+#[test]
+fn repetitions_of_scattered_lamps_keep_their_distances() {
+    let lamps = [[149, 97], [258, 120], [69, 169], [229, 259], [105, 264], [209, 366], [75, 378], [120, 476]];
+    let is_lit = |x: f64, y: f64| lamps.iter().any(|[u, v]| (x - f64::from(*u)).hypot(y - f64::from(*v)) < 11.0);
+    let exemplar = Exemplar::new(&Design::new(324, 509, is_lit).input(), 200.0, 0.0, Monitor::default().job()).unwrap();
+    let cell = DVec2::new(231.0, 442.0);
+    let smallest = |cell: DVec2| {
+        let copies = [0.0, 1.0, 2.0].map(|v| [0.0, 1.0, 2.0].map(|u| cell * DVec2::new(u, v)));
+        let shifts = copies.as_flattened();
+        let centres: Vec<DVec2> =
+            lamps.iter().flat_map(|[u, v]| shifts.iter().map(|s| DVec2::new(*u as f64, *v as f64) + *s)).collect();
+        statistics::nearest_distances(&centres).into_iter().fold(f64::INFINITY, f64::min)
+    };
+    assert!(smallest(cell) < 70.0, "{}", smallest(cell));
+    let apart = copies::keep_distances(&exemplar, cell, DVec2::splat(150.0));
+    assert!(smallest(apart) > 80.0, "{} {apart}", smallest(apart));
+    assert!((0.999..1.36).contains(&(apart.element_product() / cell.element_product())), "{apart}");
+    // Periods with enough room stay, and no period falls below the minimum.
+    let wide = DVec2::new(320.0, 500.0);
+    assert_eq!(copies::keep_distances(&exemplar, wide, DVec2::ZERO), wide);
+    assert_eq!(copies::keep_distances(&exemplar, cell, cell * 1.4), cell);
 }
 
 #[test]

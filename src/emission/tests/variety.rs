@@ -1,6 +1,9 @@
 //! Tests that a texture keeps the variation between the lamps of its exemplar, even if the lamps lie on a lattice.
 
 use super::*;
+use crate::emission::analysis::evidence::Evidence;
+use crate::emission::analysis::sites::Sites;
+use crate::emission::exemplar::roles::Role;
 
 /// Square lamps of 14 pixels with period 40. `level` gives the brightness of each lamp from its cell.
 fn of_levels(side: usize, level: impl Fn([i64; 2]) -> f32) -> Design {
@@ -161,4 +164,42 @@ fn lamps_are_missing_as_often_as_where_the_exemplar_shows_their_places_whole() {
     // If patches could show the dark places at the border, but not the lit ones, the number of lamps would be lower by
     // about an eighth.
     assert!((filled / expected - 1.0).abs() < 0.05, "{filled} {expected}");
+}
+
+/// The exemplar, and the sites of its whole lamps for a lattice.
+fn sites(design: &Design, basis: [DVec2; 2]) -> (Exemplar, Sites) {
+    let exemplar = Exemplar::new(&design.input(), 200.0, 0.0, Monitor::default().job()).unwrap();
+    let sites = Sites::new(&exemplar, &exemplar.measured_lamps(Role::is_whole), Law::Lattice(basis)).unwrap();
+    (exemplar, sites)
+}
+
+#[test]
+fn a_lamp_off_the_lattice_is_not_repeated_in_every_cell() {
+    // Four rows of two lamps, and a lamp between two further rows.
+    let is_lit = |x: f64, y: f64| {
+        let is_at = |u: f64, v: f64| (x - u).abs() < 9.0 && (y - v).abs() < 5.0;
+        [20.0, 60.0, 100.0, 140.0].iter().any(|v| is_at(30.0, *v) || is_at(80.0, *v)) || is_at(30.0, 168.0)
+    };
+    let (_, sites) = sites(&Design::new(110, 200, is_lit), [DVec2::X * 50.0, DVec2::Y * 40.0]);
+    let of_lamps = |count: usize| sites.list.iter().find(|site| site.lamps.len() == count).unwrap();
+    assert_eq!(of_lamps(8).occupancy(), 1.0);
+    // Of the nine places among the lamps, one has a lamp.
+    let stray = of_lamps(1);
+    assert!(stray.occupancy() < 0.3 && stray.hole_count >= 3, "{} {}", stray.occupancy(), stray.hole_count);
+}
+
+#[test]
+fn two_lamps_show_no_lattice_and_three_that_lie_askew_do() {
+    let show = |lamps: &[DVec2]| {
+        let design = Design::new(400, 260, |x, y| lamps.iter().any(|lamp| lamp.distance(DVec2::new(x, y)) < 7.0));
+        let (exemplar, sites) = sites(&design, [DVec2::X * 90.0, DVec2::Y * 120.0]);
+        sites.show_both_periods(&Evidence::of(&exemplar))
+    };
+    let [one, two, three] = [DVec2::new(100.0, 80.0), DVec2::new(280.0, 80.0), DVec2::new(190.0, 200.0)];
+    assert!(!show(&[one, two]));
+    assert!(show(&[one, two, three]));
+    // The third lamp may be cut by the border.
+    assert!(show(&[one, two, DVec2::new(10.0, 200.0), DVec2::new(370.0, 257.0)]));
+    // All steps are multiples of one.
+    assert!(!show(&[one, DVec2::new(190.0, 200.0)]));
 }

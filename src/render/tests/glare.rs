@@ -384,7 +384,8 @@ fn pictures_rate_as_the_luminaires_in_them() {
         // edge of a lamp would show a mean luminance, whose square is too small.
         let params = crate::render::Params { width: 1000, height: 1000, samples: 1, ..Default::default() };
         let film = Pool::new(2).unwrap().run(|| render(&world(scene), &camera, &params));
-        let seen = glare::rate(&film.beauty, &glare::Params { fov_y: 2.4, threshold: 1300.0 }).unwrap();
+        let seen =
+            glare::rate(&film.beauty, &glare::Params { fov_y: 2.4, threshold: 1300.0, ..Default::default() }).unwrap();
         // Bright pixels of noise count as small sources, too. Count only the large sources, which are the luminaires.
         let large = seen.sources.iter().filter(|s| s.solid_angle > 1e-3).count();
         assert_eq!((large, rating.sources.len(), film.unseen_lights), (3, 3, 0), "{name}");

@@ -19,6 +19,7 @@
 mod footprint;
 mod painted;
 mod proposed;
+mod rays;
 mod regions;
 mod similar;
 mod soft;
@@ -127,7 +128,7 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
         )?,
     };
     let similar = search.run(&painted, job.part(0.8, 0.95))?;
-    let found = segmentation(&search, &painted, &similar, &paint)?;
+    let found = segmentation(&search, &painted, &similar, &paint, job.part(0.95, 1.0))?;
     Ok(Segmentation { is_proposed, ..found })
 }
 
@@ -166,12 +167,18 @@ fn floor(photo: &Brightness, examples: &[Vec<u32>]) -> u16 {
     level(*dim * (1.0 - DEPTH)) as u16
 }
 
-fn segmentation(search: &Search, painted: &[u32], similar: &Similar, paint: &Ownership) -> Result<Segmentation> {
+fn segmentation(
+    search: &Search,
+    painted: &[u32],
+    similar: &Similar,
+    paint: &Ownership,
+    job: Job,
+) -> Result<Segmentation> {
     let Search { tree, regions, photo, plane, .. } = *search;
     let (width, height) = (photo.width, photo.height);
     let mut confidence = Image::new(width, height, 1)?;
     for &node in painted.iter().chain(&similar.found) {
-        soft::add(node, search, &mut confidence)?;
+        soft::add(node, search, &mut confidence, job)?;
     }
     let mut unseen = Image::new(width, height, 1)?;
     for &node in &similar.doubtful {

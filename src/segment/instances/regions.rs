@@ -199,6 +199,28 @@ fn ellipse([xx, yy, xy]: [f64; 3], pixel: f64) -> [f64; 2] {
     [mean + spread, (mean - spread).max(pixel)].map(|variance| 4.0 * variance.sqrt())
 }
 
+/// The share of a node's contour across which the gradient is below `min_gradient`, in L* per pixel.
+pub fn soft_share(node: u32, tree: &Tree, photo: &Brightness, min_gradient: f64) -> f64 {
+    let pixels = tree.pixels(node);
+    let contour = pixels.iter().map(|&p| photo.levels[p as usize]).min().unwrap_or(0);
+    let (mut length, mut soft) = (0usize, 0usize);
+    for pixel in pixels.iter().map(|&p| p as usize) {
+        let (x, y) = (pixel % photo.width, pixel / photo.width);
+        let neighbours = [
+            (x > 0).then(|| pixel - 1),
+            (x + 1 < photo.width).then(|| pixel + 1),
+            (y > 0).then(|| pixel - photo.width),
+            (y + 1 < photo.height).then(|| pixel + photo.width),
+        ];
+        // The node is connected, so neighbours that are darker than its darkest pixel lie outside.
+        for beside in neighbours.into_iter().flatten().filter(|&beside| photo.levels[beside] < contour) {
+            length += 1;
+            soft += usize::from(f64::from(photo.gradient[pixel] + photo.gradient[beside]) < 2.0 * min_gradient);
+        }
+    }
+    soft as f64 / length.max(1) as f64
+}
+
 /// Sums over the pixels of each node of the component tree, and over the pixel edges along its contour.
 pub struct Regions {
     /// Area of each node in pixels.

@@ -1,10 +1,12 @@
 //! Computes the confidence of a region. It is one half on the region's contour, which may run between pixels.
 
+use super::rays;
 use super::regions::Brightness;
 use super::similar::Search;
 use super::surroundings::Bounds;
 use crate::error::Result;
 use crate::image::{Image, try_collect, try_push, try_vec};
+use crate::job::Job;
 
 /// Distance from a region beyond which its confidence is 0, in pixels.
 /// [convention: twice the radius of bilinear sampling]
@@ -21,10 +23,13 @@ const HOLE: f64 = 0.05;
 /// Writes the confidence of one region, given as a node of the component tree, to the image `confidence`. Where regions
 /// overlap, the larger confidence remains. Across the contour, the confidence follows the brightness and rises from 0
 /// to 1 within about one pixel. Outside the region, only pixels of the plane within `MAX_DISTANCE` get a confidence.
-pub fn add(node: u32, search: &Search, confidence: &mut Image) -> Result<()> {
+pub fn add(node: u32, search: &Search, confidence: &mut Image, job: Job) -> Result<()> {
     let Search { tree, regions, photo, plane, .. } = *search;
-    let filled = filled(tree.pixels(node), photo)?;
-    let pixels = filled.as_slice();
+    let mut region = filled(tree.pixels(node), photo)?;
+    if regions.solidity(node as usize) < rays::MAX_SOLIDITY {
+        region = rays::remove(region, regions.axes(node as usize)[1], photo, job)?;
+    }
+    let pixels = region.as_slice();
     let bounds = Bounds::of(pixels, photo, MAX_DISTANCE.into());
     let distance = bounds.distance(pixels, photo.width)?;
     // The contour lies at the lightness of the region's dimmest pixel.

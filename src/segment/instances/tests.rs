@@ -1,5 +1,7 @@
 //! Tests of lamp detection on a synthetic photo with known lamps, a window and noise.
 
+use super::regions::{self, Brightness};
+use super::tree::Tree;
 use crate::error::ErrorKind;
 use crate::features::CHANNELS;
 use crate::image::{Image, colour};
@@ -339,6 +341,54 @@ fn without_strokes_regions_that_are_all_unlike_are_no_proposal() {
     let input = Input { features: &features, strokes: &[], region: Some(&plane) };
     let error = run(&input, &Params::for_lights(), Monitor::default().job()).unwrap_err();
     assert_eq!(error.kind, ErrorKind::Degenerate);
+}
+
+#[test]
+fn light_with_one_soft_side_has_a_soft_contour() {
+    // A region as bright as a lamp. Its lower side is soft: L* falls by `slope` per pixel from row 72 on. The other
+    // sides are sharp. Measures the contour of the region at an L* of about 90.
+    let soft_share = |slope: f32| {
+        let mut features = features_with(&[]);
+        for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+            let (x, y) = (i % WIDTH, i / WIDTH);
+            if is_in([95, 62, 145, 118], x, y) {
+                pixel[0] = pixel[0].max(100.0 - slope * (y as f32 - 72.0).max(0.0));
+            }
+        }
+        let monitor = Monitor::default();
+        let photo = Brightness::new(&features, 100.0, monitor.job()).unwrap();
+        let tree = Tree::new(&photo.levels, regions::level(90.0) as u16, WIDTH, monitor.job()).unwrap();
+        // Of the nodes that hold the region's brightest part, the largest is the region.
+        let holds = |node: &u32| tree.pixels(*node).contains(&(68 * WIDTH as u32 + 120));
+        let node = (1..tree.len() as u32).filter(holds).max_by_key(|&node| tree.pixels(node).len()).unwrap();
+        regions::soft_share(node, &tree, &photo, 3.0)
+    };
+    assert_eq!(soft_share(40.0), 0.0);
+    assert!((0.3..0.5).contains(&soft_share(1.8)), "{}", soft_share(1.8));
+}
+
+#[test]
+fn rays_around_a_small_lamp_are_left_out_and_corners_stay() {
+    // `form` tells whether a position, relative to the centre of a lamp, is lit.
+    let lit = |form: &dyn Fn(f32, f32) -> bool| {
+        let mut features = features_with(&[]);
+        for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+            if form((i % WIDTH) as f32 - 160.0, (i / WIDTH) as f32 - 60.0) {
+                pixel[0] = 100.0;
+            }
+        }
+        let found = segment_in(&features, &[stroke(true, &[[158.0, 60.0], [162.0, 60.0]])], Some(&ceiling()));
+        move |x: f32, y: f32| found.mask.pixel((160.0 + x) as usize, (60.0 + y) as usize)[0] > 0.5
+    };
+    // A disc with four rays, 3 pixels wide.
+    let star = lit(&|x, y| x.hypot(y) < 14.0 || (x.abs().min(y.abs()) < 1.6 && x.abs().max(y.abs()) < 34.0));
+    assert!(star(0.0, 0.0) && star(9.0, 9.0) && star(12.0, 0.0));
+    assert!(!star(25.0, 0.0) && !star(-25.0, 0.0) && !star(0.0, 25.0));
+    // An equilateral triangle, and a cross of broad arms, keep their corners.
+    let triangle = lit(&|x, y| y < 15.0 && 3f32.sqrt() * x.abs() < y + 30.0);
+    assert!(triangle(0.0, -26.0) && triangle(21.0, 12.0) && triangle(-21.0, 12.0));
+    let cross = lit(&|x, y| x.abs().min(y.abs()) < 6.0 && x.abs().max(y.abs()) < 25.0);
+    assert!(cross(22.0, 4.0) && cross(-4.0, 22.0));
 }
 
 #[test]

@@ -7,12 +7,13 @@ import dataclasses
 import math
 from typing import TYPE_CHECKING, Any
 
-from . import options
+from . import options, values
 from .console import Console
-from .exits import Exit
+from .exits import Exit, usage
 
 if TYPE_CHECKING:
     from ..context import Context
+    from ..design import UgrTable
     from ..scene import Scene
 
 SUMMARY = "contents of a scene, a picture or a luminaire file"
@@ -25,6 +26,18 @@ def add(parser: argparse.ArgumentParser) -> None:
     """The options."""
     parser.add_argument("file", metavar="FILE", help=f"{options.SCENE}; {options.IMAGE}; or a luminaire, {options.LUMINAIRE}")
     options.add_units(parser)
+    parser.add_argument(
+        "--ugr-table",
+        action="store_true",
+        help="print the table of the unified glare rating of a luminaire in the 19 standard rooms of CIE 190",
+    )
+    parser.add_argument(
+        "--spacing",
+        type=values.one_over,
+        default=0.25,
+        metavar="S",
+        help="of --ugr-table: distance of the luminaires over their height above the eyes; default 0.25",
+    )
     options.add_common(parser)
 
 
@@ -34,13 +47,21 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
     from ..photometry import LUMINAIRES, luminaire_path
 
     context = files.context_of(args)
+    is_luminaire = luminaire_path(args.file).suffix.lower() in LUMINAIRES
+    if args.ugr_table and not is_luminaire:
+        raise usage(f"--ugr-table: {args.file} is no luminaire; its name must end in {', '.join(LUMINAIRES)}")
     if files.is_scene(args.file):
         scene = files.load_scene(context, args.file, args.units)
         result = of_scene(scene)
         return console.print_result({"command": "inspect", **result}, scene_words(result), files.scene_warnings(scene))
-    if luminaire_path(args.file).suffix.lower() in LUMINAIRES:
+    if is_luminaire:
         result = of_luminaire(context, args.file)
-        return console.print_result({"command": "inspect", **result}, luminaire_words(result))
+        words = luminaire_words(result)
+        if args.ugr_table:
+            table = table_of(context, args.file, args.spacing)
+            result["ugr_table"] = table_values(table)
+            words += ["", *table.lines(corrected=False), "", *table.lines()]
+        return console.print_result({"command": "inspect", **result}, words)
     result = of_image(context, args.file)
     return console.print_result({"command": "inspect", **result}, image_words(result))
 
@@ -186,6 +207,34 @@ def of_luminaire(context: Context, name: str) -> dict[str, Any]:
         "peak_c_degrees": peak[1],
         "peak_gamma_degrees": peak[2],
         "lm_per_watt": report.flux / report.watts if report.watts > 0 else None,
+    }
+
+
+def table_of(context: Context, name: str, spacing: float) -> UgrTable:
+    """Computes the UGR table of a luminaire file."""
+    from .. import Distribution
+    from ..design import ugr_table
+    from .exits import unreadable
+
+    try:
+        with Distribution.load(context, name) as luminaire:
+            return ugr_table(luminaire, spacing)
+    except ValueError as error:  # the luminaire has no table
+        raise unreadable(name, error) from None
+
+
+def table_values(table: UgrTable) -> dict[str, Any]:
+    """Returns a UGR table for JSON; its values are those corrected to the lamp flux."""
+    from ..design.glare_table import REFLECTANCES, ROOMS, VIEWS
+
+    return {
+        "spacing": table.spacing,
+        "lamp_flux_lm": table.lamp_flux,
+        "length_along_c": table.length_along,
+        "rooms_h": ROOMS,
+        "reflectances": REFLECTANCES,
+        **{view: table.corrected[:, :, index] for index, view in enumerate(VIEWS)},
+        **{f"uncorrected_{view}": table.uncorrected[:, :, index] for index, view in enumerate(VIEWS)},
     }
 
 

@@ -18,7 +18,19 @@ from .console import Console
 from .exits import TABLE, Exit, Failure
 
 #: The subcommands in the order of --help; each is a module of this folder.
-SUBCOMMANDS = ("transfer", "render", "lux", "stylise", "sheet", "inspect", "surfaces", "plan", "design", "studio")
+SUBCOMMANDS = (
+    "transfer",
+    "render",
+    "lux",
+    "stylise",
+    "sheet",
+    "inspect",
+    "surfaces",
+    "plan",
+    "design",
+    "products",
+    "studio",
+)
 
 DESCRIPTION = """Lighting from one photo onto a 3D scene, rendering, lux, and pictures in the style of an artwork.
 

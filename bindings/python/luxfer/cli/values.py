@@ -101,6 +101,25 @@ def above_zero(text: str) -> float:
     return value
 
 
+def one_over(text: str) -> float:
+    """Parses 1/n, with a whole n in [1, 20]."""
+    value = real(text)
+    if value is None or not 0.05 <= value <= 1 or abs(1 / value - round(1 / value)) > 1e-9:
+        raise wrong(text, "1/n with a whole n in [1, 20], such as 0.25 or 1")
+    return value
+
+
+def sides(text: str) -> tuple[float, ...]:
+    """Parses a diameter, two sides, or two sides and a height, such as 60x60cm or 1.2x0.3x0.08."""
+    unit = re.search(r"(mm|cm|m|inch|ft)?$", text)
+    ending = unit[1] if unit and unit[1] else "m"
+    parts = [real(part) for part in text.removesuffix(ending).split("x")]
+    found = [part * UNITS[ending] for part in parts if part is not None and 0 < part <= 1e6]
+    if len(found) != len(parts) or len(found) > 3:
+        raise wrong(text, "a diameter, two sides, or two sides and a height, such as 0.3, 60x60cm or 1.2x0.3x0.08")
+    return (found[0], found[0]) if len(found) == 1 else tuple(found)
+
+
 def numbers(text: str, count: int) -> tuple[float, ...] | None:
     """Parses numbers separated by commas; None if they are not `count` numbers."""
     parts = [real(part) for part in text.split(",")]

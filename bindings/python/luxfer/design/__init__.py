@@ -9,9 +9,12 @@ from .arrange import Arrangement, Offer, Search, arrange
 from .check import Checked, Finding, Settings, check
 from .command import main
 from .energy import Energy, Hours, Standby
+from .glare_table import UgrTable, ugr_table
+from .lamps import Lamp
 from .likeness import Likeness
 from .look import Distance, distance
 from .luminaires import Luminaire, Product, dimmed, from_transfer, layout, lit_scene
+from .products import Found, find_products
 from .project import Project
 from .report import save
 from .rooms import Room
@@ -25,7 +28,9 @@ __all__ = [
     "Distance",
     "Energy",
     "Finding",
+    "Found",
     "Hours",
+    "Lamp",
     "LightScene",
     "Likeness",
     "Luminaire",
@@ -39,6 +44,7 @@ __all__ = [
     "Settings",
     "Solution",
     "Standby",
+    "UgrTable",
     "Wishes",
     "areas",
     "arrange",
@@ -46,6 +52,7 @@ __all__ = [
     "dimmed",
     "distance",
     "emergency",
+    "find_products",
     "from_transfer",
     "ifc",
     "layout",
@@ -60,4 +67,5 @@ __all__ = [
     "schedule",
     "solve",
     "standard",
+    "ugr_table",
 ]
