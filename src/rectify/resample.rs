@@ -63,7 +63,7 @@ pub fn warp_photo(source: &Image, to_source: &PhotoMap, width: usize, height: us
         grid: None,
         size: [source.width as f64, source.height as f64],
     };
-    resample(source, Target { map, width }, height, job)
+    resample(source, &Target { map, width }, height, job)
 }
 
 /// Like [`warp`], but resamples through a map that is given on a grid.
@@ -75,14 +75,14 @@ pub fn warp_grid(source: &Image, to_source: &GridMap, job: Job) -> Result<Image>
         grid: Some(to_source.try_clone()?),
         size: [source.width as f64, source.height as f64],
     };
-    resample(source, Target { map, width: to_source.width }, to_source.height, job)
+    resample(source, &Target { map, width: to_source.width }, to_source.height, job)
 }
 
-fn resample(source: &Image, target: Target, height: usize, job: Job) -> Result<Image> {
+fn resample(source: &Image, target: &Target, height: usize, job: Job) -> Result<Image> {
     let width = target.width;
     let mut out = Image::new(width, height, source.channels)?;
 
-    let wanted = exec::map(height.div_ceil(BAND), job.part(0.0, 0.05), |band| highest_level(&target, band * BAND))?;
+    let wanted = exec::map(height.div_ceil(BAND), job.part(0.0, 0.05), |band| highest_level(target, band * BAND))?;
     let wanted = wanted.into_iter().max().unwrap_or(0);
     let smaller = pyramid::halvings(source, wanted, job.part(0.05, 0.2))?;
     let levels: Vec<&Image> = std::iter::once(source).chain(&smaller).collect();
@@ -91,7 +91,7 @@ fn resample(source: &Image, target: Target, height: usize, job: Job) -> Result<I
     let job = job.part(0.2, 1.0);
     let done = AtomicUsize::new(0);
     exec::for_runs(&mut out.data, BAND * row_len, job, |first, band| {
-        fill(Level::widest(), &levels, &target, first / row_len, band);
+        fill(Level::widest(), &levels, target, first / row_len, band);
         let rows = done.fetch_add(BAND, Ordering::Relaxed) + BAND;
         job.report(rows.min(height) as f64 / height as f64);
     })?;
