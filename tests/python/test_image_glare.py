@@ -152,7 +152,7 @@ class BesideEvalglare(Case):
             self.assertAlmostEqual(ours.solid_angle / theirs["omega_sources"], 1, delta=1e-3, msg=what)
             self.assertAlmostEqual(ours.dgp, self.expected(theirs["E_v"], sources), delta=1e-3, msg=what)
             if all(source["zdir"] >= 0 for source in sources):
-                # Its factors are not rounded as those of the paper.
+                # The factors of evalglare 3 differ slightly from the factors in the paper.
                 self.assertAlmostEqual(self.expected(theirs["E_v"], sources, EVALGLARE), theirs["dgp"], delta=1e-5)
                 self.assertAlmostEqual(ours.dgp, theirs["dgp"], delta=1e-3, msg=what)
                 largest = max(largest, abs(ours.dgp - theirs["dgp"]))

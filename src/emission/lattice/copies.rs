@@ -60,11 +60,11 @@ pub fn keep_distances(exemplar: &Exemplar, cell: DVec2, min_cell: DVec2) -> DVec
 /// How much nearer lamps come to each other where copies adjoin: the mean, over the copied lamps, of the share by which
 /// the distance to the nearest lamp falls short of the distance `in_photo`.
 fn shortfall(copied: &[DVec2], in_photo: &[f64], cell: DVec2) -> f64 {
-    let shifts = [-1.0, 0.0, 1.0].map(|y| [-1.0, 0.0, 1.0].map(|x| DVec2::new(x, y) * cell));
-    // The unshifted copy comes first.
-    let order = [4, 0, 1, 2, 3, 5, 6, 7, 8].map(|k| shifts[k / 3][k % 3]);
-    let copies: Vec<DVec2> = order.iter().flat_map(|shift| copied.iter().map(move |lamp| *lamp + *shift)).collect();
-    let nearest = nearest_distances(&copies);
+    let around = [-1.0, 0.0, 1.0].map(|y| [-1.0, 0.0, 1.0].map(|x| DVec2::new(x, y) * cell));
+    let neighbours = around.into_iter().flatten().filter(|shift| *shift != DVec2::ZERO);
+    let copies = neighbours.flat_map(|shift| copied.iter().map(move |lamp| *lamp + shift));
+    // The distances of the unshifted lamps, which come first, are compared.
+    let nearest = nearest_distances(&copied.iter().copied().chain(copies).collect::<Vec<_>>());
     let lost = in_photo.iter().zip(nearest).map(|(there, here)| (1.0 - here / there).max(0.0));
     lost.sum::<f64>() / copied.len() as f64
 }

@@ -42,7 +42,7 @@ pub fn remove(pixels: Vec<u32>, short_axis: f64, photo: &Brightness, job: Job) -
         return Ok(pixels);
     }
 
-    // Of the parts outside the discs, those that reach far are rays.
+    // A part outside the discs is a ray if it reaches far from them.
     let mut thin = Image::new(across, down, 1)?;
     for (thin, (outside, disc)) in thin.data.iter_mut().zip(outside.data.iter().zip(&discs.data)) {
         *thin = f32::from(*outside < 0.5 && *disc < 0.5);

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SUMMARY = "the luminaire files nearest to a lamp"
 
-#: The shapes, which are also those of design.lamps, whose import takes a while.
+#: The shapes of design.lamps. They are repeated here because the import of design.lamps takes a while.
 SHAPES = ("rectangle", "round", "tube", "globe")
 
 
@@ -88,12 +88,7 @@ def run(args: argparse.Namespace, console: Console) -> Exit:
         "unreadable": [{"file": path, "reason": reason} for path, reason in found.unreadable],
         "incomparable": found.incomparable,
     }
-    lines = [f"{found.compared} luminaires compared with {found.lamp}"]
-    if found.unknown:
-        lines.append(f"left out, because unknown of the lamp: {', '.join(found.unknown)}")
-    lines += map(str, found.matches)
-    lines += [f"states nothing to compare: {path}" for path in found.incomparable]
-    return console.print_result(result, lines, warnings)
+    return console.print_result(result, [*found.lines(), *found.incomparable_lines()], warnings)
 
 
 def _lamp(context: Context, like: str | None) -> Lamp | None:

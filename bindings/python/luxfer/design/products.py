@@ -100,15 +100,21 @@ class Found:
     incomparable: tuple[Path, ...]
     """Files that state nothing of what the lamp states."""
 
-    def explanation(self) -> str:
-        """The result in lines of text."""
+    def lines(self) -> list[str]:
+        """The matches in lines of text, after a line that says what was compared."""
         lines = [f"{self.compared} luminaires compared with {self.lamp}"]
         if self.unknown:
             lines.append(f"left out, because unknown of the lamp: {', '.join(self.unknown)}")
-        lines += map(str, self.matches)
-        lines += [f"cannot be read: {path}: {reason}" for path, reason in self.unreadable]
-        lines += [f"states nothing to compare: {path}" for path in self.incomparable]
-        return "\n".join(lines)
+        return [*lines, *map(str, self.matches)]
+
+    def incomparable_lines(self) -> list[str]:
+        """The files that state nothing to compare, in lines of text."""
+        return [f"states nothing to compare: {path}" for path in self.incomparable]
+
+    def explanation(self) -> str:
+        """The result in lines of text."""
+        unreadable = [f"cannot be read: {path}: {reason}" for path, reason in self.unreadable]
+        return "\n".join([*self.lines(), *unreadable, *self.incomparable_lines()])
 
 
 def find_products(
