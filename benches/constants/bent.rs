@@ -22,7 +22,7 @@ const NOISE: f32 = 0.01;
 /// Factor of the stated error that the true one exceeds in one of twenty photos.
 const CONFIDENCE: f64 = 1.96;
 
-fn kinds() -> [(&'static str, Defects); 13] {
+fn kinds() -> [(&'static str, Defects); 14] {
     let arc = |bow: f64, angle: f64| Defects { bow, angle, ..NONE };
     let barrel = |third: f64, paper: Defects| Defects { barrel: [third, 0.0], ..paper };
     let relief = |height: f64, length: f64| Defects { relief: [height, length], ..NONE };
@@ -33,6 +33,7 @@ fn kinds() -> [(&'static str, Defects); 13] {
         ("arc_1_other_axis", arc(0.01, FRAC_PI_2)),
         ("arc_2_oblique", arc(0.02, 0.4)),
         ("curl_2", Defects { profile: Profile::Curl, ..arc(0.02, 0.0) }),
+        ("wave_1", Defects { profile: Profile::Wave, ..arc(0.01, FRAC_PI_2) }),
         ("barrel_1", barrel(0.01, NONE)),
         ("barrel_2", barrel(0.02, NONE)),
         ("barrel_4", barrel(0.04, NONE)),

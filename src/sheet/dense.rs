@@ -35,6 +35,19 @@ impl Cholesky {
         x
     }
 
+    /// Replaces several right sides `b` by `L⁻¹ b`. A row of `sides` holds one entry of each of them.
+    pub fn forward_all(&self, sides: &mut [f64]) {
+        let count = sides.len() / self.size;
+        for (i, row) in self.lower.chunks_exact(self.size).enumerate() {
+            let (solved, rest) = sides.split_at_mut(i * count);
+            let entries = &mut rest[..count];
+            for (l, earlier) in row.iter().zip(solved.chunks_exact(count)) {
+                entries.iter_mut().zip(earlier).for_each(|(x, e)| *x -= l * e);
+            }
+            entries.iter_mut().for_each(|x| *x /= row[i]);
+        }
+    }
+
     /// Returns `L⁻ᵀ b`.
     pub fn backward(&self, b: &[f64]) -> Vec<f64> {
         let mut x = b.to_vec();
@@ -81,6 +94,10 @@ mod tests {
             let solved = factor.solve(&b);
             assert!(solved.iter().zip(&x).all(|(a, b)| (a - b).abs() < 1e-9));
             assert_eq!(factor.diagonal().count(), size);
+            let mut sides: Vec<f64> = b.iter().flat_map(|v| [*v, 2.0 * v]).collect();
+            factor.forward_all(&mut sides);
+            let one = factor.forward(&b);
+            assert!(sides.chunks(2).zip(&one).all(|(s, v)| (s[0] - v).abs() < 1e-9 && (s[1] - 2.0 * v).abs() < 1e-9));
         }
         assert!(Cholesky::new(2, vec![1.0, 2.0, 2.0, 1.0]).is_none());
         assert!(Cholesky::new(1, vec![f64::NAN]).is_none());

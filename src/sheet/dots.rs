@@ -40,11 +40,15 @@ pub fn find(grey: &Image, page: &Page, dot: DVec2, model: &PageMap) -> Option<DV
     let steps = (REACH / SEARCH_STEP) as i32;
     let shifts = (-steps..=steps).flat_map(|j| (-steps..=steps).map(move |i| DVec2::new(f64::from(i), f64::from(j))));
     let place = |shift: DVec2| at + shape * (SEARCH_STEP * shift);
-    let contrasts = shifts.map(|shift| (contrast(grey, place(shift), shape), shift));
-    let (best, shift) = contrasts.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    if best < MIN_CONTRAST {
-        return None;
+    let circles = [INSIDE, OUTSIDE].map(|radius| circle(shape, radius));
+    let mut best = None;
+    for shift in shifts {
+        let least = best.map_or(MIN_CONTRAST, |(contrast, _)| contrast);
+        if let Some(contrast) = contrast(grey, place(shift), &circles, least) {
+            best = Some((contrast, shift));
+        }
     }
+    let (_, shift) = best?;
     let mut found = place(shift);
     for _ in 0..4 {
         found = centre(grey, found, shape)?;
@@ -52,32 +56,41 @@ pub fn find(grey: &Image, page: &Page, dot: DVec2, model: &PageMap) -> Option<DV
     (found.distance(at) < (REACH + 1.0) * x.length().max(y.length())).then_some(found)
 }
 
-/// Returns how much darker the darkest paper around a place is than the brightest point on a circle inside it.
-fn contrast(grey: &Image, at: DVec2, shape: DMat2) -> f64 {
-    const STEPS: usize = 12;
-    let value = |radius: f64, i: usize| {
-        let p = at + shape * (radius * maths::direction_at(std::f64::consts::TAU * i as f64 / STEPS as f64));
-        f64::from(grey.sample(p.x, p.y, 0))
-    };
-    let paper = (0..STEPS).map(|i| value(OUTSIDE, i)).fold(f64::INFINITY, f64::min);
-    let ink = (0..STEPS).map(|i| value(INSIDE, i)).fold(f64::NEG_INFINITY, f64::max);
-    paper - ink
+/// Number of places on a circle around a dot.
+const STEPS: usize = 12;
+
+/// Returns places on a circle of the given radius around the dot, relative to its centre in the photo.
+fn circle(shape: DMat2, radius: f64) -> [DVec2; STEPS] {
+    std::array::from_fn(|i| shape * (radius * maths::direction_at(std::f64::consts::TAU * i as f64 / STEPS as f64)))
+}
+
+/// Returns how much darker the darkest paper on the circle around a place is than the brightest point on the circle
+/// inside it; `None` if this is not more than `least`.
+fn contrast(grey: &Image, at: DVec2, [inside, outside]: &[[DVec2; STEPS]; 2], least: f64) -> Option<f64> {
+    let value = |p: DVec2| f64::from(grey.sample(p.x, p.y, 0));
+    let (mut paper, mut ink) = (f64::INFINITY, f64::NEG_INFINITY);
+    for (inside, outside) in inside.iter().zip(outside) {
+        ink = ink.max(value(at + *inside));
+        paper = paper.min(value(at + *outside));
+        if paper - ink <= least {
+            return None;
+        }
+    }
+    Some(paper - ink)
 }
 
 /// Returns the centre of gravity of the darkness around a place. The paper around the dot is a plane of brightness.
 /// `None` if the darkness has not the area of a dot.
 fn centre(grey: &Image, at: DVec2, shape: DMat2) -> Option<DVec2> {
-    const STEPS: usize = 24;
     let inverse = shape.inverse();
     // On a circle, the mean and the first harmonics are the plane that fits best.
     let mut plane = [0.0; 3];
-    for i in 0..STEPS {
-        let direction = maths::direction_at(std::f64::consts::TAU * i as f64 / STEPS as f64);
-        let p = at + shape * (OUTSIDE * direction);
+    for offset in circle(shape, OUTSIDE) {
+        let (p, local) = (at + offset, inverse * offset);
         let v = f64::from(grey.sample(p.x, p.y, 0)) / STEPS as f64;
         plane[0] += v;
-        plane[1] += 2.0 * v * direction.x / OUTSIDE;
-        plane[2] += 2.0 * v * direction.y / OUTSIDE;
+        plane[1] += 2.0 * v * local.x / (OUTSIDE * OUTSIDE);
+        plane[2] += 2.0 * v * local.y / (OUTSIDE * OUTSIDE);
     }
     let reach = (OUTSIDE * DVec2::new(shape.row(0).length(), shape.row(1).length())).ceil();
     let (first, last) = ((at - reach).floor(), (at + reach).ceil());

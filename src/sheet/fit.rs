@@ -27,6 +27,8 @@ const BENT_MARKS: usize = 9;
 /// points; below the displacement by paint that covers a part of a mark]
 const OUTLIER: f64 = 6.0;
 const MIN_OUTLIER: f64 = 0.3;
+/// Median of the length of a vector of two normal deviates with standard deviation 1: √(2 ln 2). [convention: exact]
+const MEDIAN: f64 = 1.177;
 /// Maximum distance between a candidate and the position that a map predicts for its mark, as a share of `extent` (the
 /// larger distance between opposite corner marks). The first tolerance is for the map through four candidates, the
 /// final one for the least-squares map. [bench constants:sheet]
@@ -154,16 +156,21 @@ fn discard(model: &PageMap, points: &mut Vec<(Which, Sighting)>, fewest: usize) 
     let mut model = model.clone();
     while points.len() > fewest {
         let all = sightings(points);
-        let (fitted, squares) = model.fit(&all);
-        model = fitted;
-        let Some(left_out) = model.left_out(&all, squares) else { return };
-        let deviations =
-            left_out.iter().map(|(distance, variance)| distance / (OUTLIER * variance.sqrt()).max(MIN_OUTLIER));
-        match deviations.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((farthest, deviation)) if deviation > 1.0 => points.remove(farthest),
+        model = model.fit(&all).0;
+        let Some(distances) = model.left_out(&all) else { return };
+        // Unlike the mean, the median does not grow with the outliers.
+        let limit = (OUTLIER * median(&distances) / MEDIAN).max(MIN_OUTLIER);
+        match distances.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) {
+            Some((farthest, distance)) if *distance > limit => points.remove(farthest),
             _ => return,
         };
     }
+}
+
+fn median(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
 }
 
 fn sightings(points: &[(Which, Sighting)]) -> Vec<Sighting> {

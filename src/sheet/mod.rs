@@ -124,7 +124,8 @@ pub fn align(photo: &Image, width: usize, height: usize, params: &Params, job: J
     let on_page: Vec<DVec2> = places.iter().map(|p| from_picture.apply(*p)).collect();
     let found = fit::fit(&page, &grey, &candidates, &on_page, job.part(0.5, 0.7))?;
     let map = GridMap::sample(width, height, |p| found.apply(from_picture.apply(p)))?;
-    let mut image = rectify::warp_grid(&photo.to_rgb()?, &map, job.part(0.7, 0.95))?;
+    let converted = (photo.channels != 3).then(|| photo.to_rgb()).transpose()?;
+    let mut image = rectify::warp_grid(converted.as_ref().unwrap_or(photo), &map, job.part(0.7, 0.95))?;
     if params.even_light {
         even_light(&mut image, photo, &page, &found, width, height, job.part(0.95, 1.0))?;
     }

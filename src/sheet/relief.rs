@@ -4,7 +4,7 @@
 //! the points, and its standard deviation elsewhere is the error of the map.
 
 use super::dense::{Cholesky, dot};
-use super::model::{PageMap, Sighting};
+use super::model::{Linearised, PageMap, Sighting};
 use super::select::{self, FittedMap, MARK_NOISE};
 use crate::maths;
 use glam::DVec2;
@@ -27,6 +27,9 @@ const IMPROBABLE: f64 = 20.0;
 /// `MARK_NOISE`. [convention: few against the coordinates of ten marks]
 const PRIOR_COUNT: f64 = 4.0;
 
+/// (z² + 1) / 4 for the 97.5 % quantile z of the normal distribution. [convention: exact]
+const QUANTILE: f64 = 1.21;
+
 /// A model with the smooth field of displacements in the photo.
 pub struct ReliefMap {
     model: PageMap,
@@ -40,14 +43,14 @@ pub struct ReliefMap {
 impl ReliefMap {
     /// Maps a pixel of the page to a pixel of the photo.
     pub fn apply(&self, page: DVec2) -> DVec2 {
-        let at = self.model.apply(page);
         if self.weights.is_empty() {
-            return at;
+            return self.model.apply(page);
         }
+        let here = self.model.linearised(page);
         let p = unit(page, &self.model);
         let near = self.at.iter().zip(&self.weights).map(|(at, w)| *w * likeness(p.distance(*at), self.length));
-        let changed = self.model.derivatives(page).into_iter().zip(&self.changes).map(|(d, change)| d * *change);
-        at + near.sum::<DVec2>() + changed.sum::<DVec2>()
+        let changed = here.derivatives().iter().zip(&self.changes).map(|(d, change)| *d * *change);
+        here.at + near.sum::<DVec2>() + changed.sum::<DVec2>()
     }
 }
 
@@ -61,158 +64,246 @@ fn likeness(distance: f64, length: f64) -> f64 {
     (1.0 + a + a * a / 3.0) * maths::exp(-a)
 }
 
-/// The points and places for a fitted model, linear in the changes of its values.
-struct Problem {
-    at: Vec<DVec2>,
-    /// For each coordinate of the photo: the residuals of the points; and for each value the derivatives of the points.
-    residuals: [Vec<f64>; 2],
-    derivatives: [Vec<Vec<f64>>; 2],
-    /// The places, their positions in the photo by the model, and the derivatives there.
-    places: Vec<DVec2>,
-    mapped: Vec<DVec2>,
-    at_places: Vec<Vec<DVec2>>,
-    /// Divisors of the values, which give all derivatives the same norm.
-    scales: Vec<f64>,
-}
-
-/// The result for one model, length and strength.
-struct Outcome {
-    /// Index of the model.
-    model: usize,
-    length: f64,
-    power: f64,
-    /// Logarithm of the probability, up to a constant.
-    probability: f64,
-    /// Variance of the noise.
-    noise: f64,
-    changes: Vec<f64>,
-    /// For each coordinate of the photo: the residuals after the changes, and the derivatives, both made independent.
-    rest: [Vec<f64>; 2],
-    derivatives: [Vec<Vec<f64>>; 2],
-    /// Factors of the covariance of the points, in units of the noise, and of the normal equations of the changes.
-    covariance: Cholesky,
-    normal: Cholesky,
-}
-
 /// Estimates the field with each of the models. Returns the most probable map, and at each of `places`, in pixels of
 /// the page, the variance of the distance between true and estimated position, in square pixels of the photo. `None` if
 /// the points determine no model.
 pub fn estimate(models: &[FittedMap], points: &[Sighting], places: &[DVec2]) -> Option<(ReliefMap, Vec<f64>)> {
-    let problems: Vec<Problem> = models.iter().map(|fitted| Problem::new(&fitted.model, points, places)).collect();
-    let mut outcomes: Vec<Outcome> = Vec::new();
-    for (model, problem) in problems.iter().enumerate() {
-        let pairs = LENGTHS.iter().flat_map(|&length| STRENGTHS.iter().map(move |&strength| (length, strength)));
-        // Without strength, all lengths are the same.
-        let pairs = pairs.filter(|&(length, strength)| strength > 0.0 || length == LENGTHS[0]);
-        outcomes.extend(pairs.filter_map(|(length, strength)| problem.solve(model, length, strength * strength)));
-    }
+    let model = &models.first()?.model;
+    let in_units = |p: DVec2| unit(p, model);
+    let at: Vec<DVec2> = points.iter().map(|p| in_units(p.page)).collect();
+    let wanted: Vec<DVec2> = places.iter().map(|p| in_units(*p)).collect();
+    let fields = fields(&at);
+    let problems: Vec<Problem> = models.iter().filter_map(|f| Problem::new(&f.model, points, places)).collect();
+    let all = problems.iter().flat_map(|problem| fields.iter().map(move |field| (problem, field)));
+    let outcomes: Vec<Outcome> = all.filter_map(|(problem, field)| Outcome::new(problem, field)).collect();
     let best = outcomes.iter().max_by(|a, b| a.probability.total_cmp(&b.probability))?;
-    let (problem, model) = (&problems[best.model], &models[best.model].model);
-    let found: Vec<(DVec2, f64)> = (0..places.len()).map(|i| problem.predict(best, i)).collect();
+    let found = best.predict(&Near::new(best.field, &at, &wanted));
+
     let (mut variance, mut total) = (vec![0.0; places.len()], 0.0);
-    for outcome in outcomes.iter().filter(|o| o.probability > best.probability - IMPROBABLE) {
-        let share = maths::exp(TEMPER * (outcome.probability - best.probability));
-        total += share;
-        for (i, sum) in variance.iter_mut().enumerate() {
-            let (mean, own) = problems[outcome.model].predict(outcome, i);
-            *sum += share * (own + mean.distance_squared(found[i].0));
+    for field in &fields {
+        let is_probable = |o: &&Outcome| std::ptr::eq(o.field, field) && o.probability > best.probability - IMPROBABLE;
+        let mut probable = outcomes.iter().filter(is_probable).peekable();
+        let near = probable.peek().map(|_| Near::new(field, &at, &wanted));
+        for (outcome, near) in probable.zip(near.iter().cycle()) {
+            let share = maths::exp(TEMPER * (outcome.probability - best.probability));
+            total += share;
+            for ((sum, (mean, own)), (best, _)) in variance.iter_mut().zip(outcome.predict(near)).zip(&found) {
+                *sum += share * (own + mean.distance_squared(*best));
+            }
         }
     }
     // With few points the variance itself is uncertain. This is the ratio of the 97.5 % quantiles of Student's
     // distribution and of the normal distribution, to first order in 1 / freedom.
-    let freedom = 2.0 * points.len() as f64 - model.values.len() as f64 + PRIOR_COUNT;
+    let freedom = 2.0 * points.len() as f64 - best.problem.values() as f64 + PRIOR_COUNT;
     let wider = maths::powi(1.0 + QUANTILE / freedom, 2);
     variance.iter_mut().for_each(|v| *v *= wider / total);
-    let mut weights = Vec::new();
-    if best.power > 0.0 {
-        let [x, y] = [0, 1].map(|axis: usize| best.covariance.backward(&best.rest[axis]));
-        weights.extend(x.iter().zip(&y).map(|(x, y)| best.power * DVec2::new(*x, *y)));
-    }
-    let changes = best.changes.iter().zip(&problem.scales).map(|(c, s)| c / s).collect();
-    let map = ReliefMap { model: model.clone(), changes, weights, at: problem.at.clone(), length: best.length };
-    Some((map, variance))
+    Some((best.map(at), variance))
 }
 
-/// (z² + 1) / 4 for the 97.5 % quantile z of the normal distribution. [convention: exact]
-const QUANTILE: f64 = 1.21;
+/// The field with one length and strength.
+struct Field {
+    length: f64,
+    /// Variance in units of the noise of the points.
+    power: f64,
+    /// Factor of the covariance of the points, in units of the noise.
+    covariance: Cholesky,
+}
 
-impl Problem {
-    fn new(model: &PageMap, points: &[Sighting], places: &[DVec2]) -> Self {
-        let off: Vec<DVec2> = points.iter().map(|p| p.photo - model.apply(p.page)).collect();
-        let rows: Vec<Vec<DVec2>> = points.iter().map(|p| model.derivatives(p.page)).collect();
-        let count = model.values.len();
-        let norm = |i: usize| rows.iter().map(|row| row[i].length_squared()).sum::<f64>().sqrt().max(f64::MIN_POSITIVE);
-        let scales: Vec<f64> = (0..count).map(norm).collect();
-        let column = |axis: usize, i: usize| rows.iter().map(|row| row[i][axis] / scales[i]).collect();
-        Self {
-            at: points.iter().map(|p| unit(p.page, model)).collect(),
-            residuals: [0, 1].map(|axis| off.iter().map(|o| o[axis]).collect()),
-            derivatives: [0, 1].map(|axis| (0..count).map(|i| column(axis, i)).collect()),
-            places: places.iter().map(|p| unit(*p, model)).collect(),
-            mapped: places.iter().map(|p| model.apply(*p)).collect(),
-            at_places: places
-                .iter()
-                .map(|p| model.derivatives(*p).iter().zip(&scales).map(|(d, s)| *d / *s).collect())
-                .collect(),
-            scales,
+/// Returns the fields of all lengths and strengths, for points at the given positions.
+fn fields(at: &[DVec2]) -> Vec<Field> {
+    let n = at.len();
+    let mut fields = Vec::new();
+    for length in LENGTHS {
+        let alike: Vec<f64> = (0..n * n)
+            .map(|k| if k % n > k / n { 0.0 } else { likeness(at[k / n].distance(at[k % n]), length) })
+            .collect();
+        // Without strength, all lengths are the same.
+        for strength in STRENGTHS.into_iter().filter(|&strength| strength > 0.0 || length == LENGTHS[0]) {
+            let power = strength * strength;
+            let entry = |(k, alike): (usize, &f64)| power * alike + f64::from(k / n == k % n);
+            if let Some(covariance) = Cholesky::new(n, alike.iter().enumerate().map(entry).collect()) {
+                fields.push(Field { length, power, covariance });
+            }
         }
     }
+    fields
+}
 
-    /// Fits the changes of the values with the given length, and variance of the field relative to the noise.
-    fn solve(&self, model: usize, length: f64, power: f64) -> Option<Outcome> {
-        let (n, p) = (self.at.len(), self.scales.len());
-        let entry =
-            |k: usize| power * likeness(self.at[k / n].distance(self.at[k % n]), length) + f64::from(k / n == k % n);
-        let covariance = Cholesky::new(n, (0..n * n).map(entry).collect())?;
-        let white = |rows: &[Vec<f64>]| rows.iter().map(|row| covariance.forward(row)).collect::<Vec<_>>();
-        let derivatives = [0, 1].map(|axis: usize| white(&self.derivatives[axis]));
-        let residuals = [0, 1].map(|axis: usize| covariance.forward(&self.residuals[axis]));
-        let normal = products(&derivatives)?;
-        let right: Vec<f64> = (0..p).map(|i| (0..2).map(|c| dot(&derivatives[c][i], &residuals[c])).sum()).collect();
-        let changes = normal.solve(&right);
-        let rest = [0, 1].map(|axis: usize| {
-            let mut rest = residuals[axis].clone();
-            for (row, change) in derivatives[axis].iter().zip(&changes) {
-                rest.iter_mut().zip(row).for_each(|(r, d)| *r -= d * change);
+/// What the points tell of a field at the places.
+struct Near {
+    /// For each point a row with the covariances with the places, made independent.
+    rows: Vec<f64>,
+    /// The variance that is left at each place.
+    rest: Vec<f64>,
+}
+
+impl Near {
+    fn new(field: &Field, at: &[DVec2], places: &[DVec2]) -> Self {
+        let covariance = |p: &DVec2, place: &DVec2| field.power * likeness(p.distance(*place), field.length);
+        let mut rest = vec![field.power; places.len()];
+        if field.power == 0.0 {
+            return Self { rows: vec![0.0; at.len() * places.len()], rest };
+        }
+        let mut rows: Vec<f64> = at.iter().flat_map(|p| places.iter().map(move |place| covariance(p, place))).collect();
+        field.covariance.forward_all(&mut rows);
+        for row in rows.chunks_exact(places.len()) {
+            rest.iter_mut().zip(row).for_each(|(rest, v)| *rest -= v * v);
+        }
+        Self { rows, rest }
+    }
+}
+
+/// The points and places for a fitted model, linear in the changes of its values.
+struct Problem<'a> {
+    model: &'a PageMap,
+    /// For each point a row: for each coordinate of the photo the derivatives by the values, then the residual.
+    rows: Vec<f64>,
+    /// The positions of the places in the photo by the model; and for each coordinate of the photo and each value a row
+    /// with the derivatives at the places.
+    mapped: Vec<DVec2>,
+    at_places: [Vec<f64>; 2],
+    /// Divisors of the values, which give all derivatives the same norm.
+    scales: Vec<f64>,
+    /// Logarithm of the root of the determinant of the normal equations without a field.
+    information: f64,
+}
+
+impl<'a> Problem<'a> {
+    /// `None` if the points do not determine the model.
+    fn new(model: &'a PageMap, points: &[Sighting], places: &[DVec2]) -> Option<Self> {
+        let at_points: Vec<Linearised> = points.iter().map(|p| model.linearised(p.page)).collect();
+        let norm = |i: usize| at_points.iter().map(|l| l.derivatives()[i].length_squared()).sum::<f64>().sqrt();
+        let scales: Vec<f64> = (0..model.values.len()).map(|i| norm(i).max(f64::MIN_POSITIVE)).collect();
+        let mut rows = Vec::new();
+        for (point, linearised) in points.iter().zip(&at_points) {
+            for axis in 0..2 {
+                rows.extend(linearised.derivatives().iter().zip(&scales).map(|(d, scale)| d[axis] / scale));
+                rows.push(point.photo[axis] - linearised.at[axis]);
             }
-            rest
+        }
+        let linearised: Vec<Linearised> = places.iter().map(|p| model.linearised(*p)).collect();
+        let row = |axis: usize, i: usize| linearised.iter().map(move |l| l.derivatives()[i][axis]);
+        let at_places = [0, 1].map(|axis: usize| {
+            scales.iter().enumerate().flat_map(|(i, scale)| row(axis, i).map(move |d| d / scale)).collect()
         });
-        let squares = dot(&rest[0], &rest[0]) + dot(&rest[1], &rest[1]) + PRIOR_COUNT * MARK_NOISE * MARK_NOISE;
-        let logarithms = |factor: &Cholesky| factor.diagonal().map(maths::ln).sum::<f64>();
+        let information = logarithm(&Equations::new(&rows, scales.len())?.normal);
+        let mapped = linearised.iter().map(|l| l.at).collect();
+        Some(Self { model, rows, mapped, at_places, scales, information })
+    }
+
+    /// Number of values.
+    fn values(&self) -> usize {
+        self.scales.len()
+    }
+}
+
+/// The normal equations of a problem.
+struct Equations {
+    normal: Cholesky,
+    right: Vec<f64>,
+    /// Sum of the squared residuals without changes.
+    squares: f64,
+}
+
+impl Equations {
+    /// `rows` are those of a problem with `count` values.
+    fn new(rows: &[f64], count: usize) -> Option<Self> {
+        let mut products = vec![0.0; (count + 1) * (count + 1)];
+        for row in rows.chunks_exact(count + 1) {
+            for (i, sums) in products.chunks_exact_mut(count + 1).enumerate() {
+                sums.iter_mut().zip(row).for_each(|(sum, v)| *sum += row[i] * v);
+            }
+        }
+        let squares = products.pop()?;
+        let right = products.split_off(count * (count + 1));
+        let matrix = products.chunks_exact(count + 1).flat_map(|row| &row[..count]).copied().collect();
+        Some(Self { normal: Cholesky::new(count, matrix)?, right, squares })
+    }
+}
+
+/// Returns the logarithm of the root of the determinant.
+fn logarithm(factor: &Cholesky) -> f64 {
+    factor.diagonal().map(maths::ln).sum()
+}
+
+/// The result for one model and field.
+struct Outcome<'a> {
+    problem: &'a Problem<'a>,
+    field: &'a Field,
+    /// Logarithm of the probability, up to a constant.
+    probability: f64,
+    /// Variance of the noise.
+    noise: f64,
+    /// The rows of the problem, made independent, and the factor of their normal equations.
+    rows: Vec<f64>,
+    normal: Cholesky,
+    changes: Vec<f64>,
+}
+
+impl<'a> Outcome<'a> {
+    /// Fits the changes of the values.
+    fn new(problem: &'a Problem<'a>, field: &'a Field) -> Option<Self> {
+        let (count, p) = (problem.rows.len() / (problem.values() + 1), problem.values());
+        let mut rows = problem.rows.clone();
+        if field.power > 0.0 {
+            field.covariance.forward_all(&mut rows);
+        }
+        let Equations { normal, right, squares } = Equations::new(&rows, p)?;
+        let solved = normal.forward(&right);
+        let squares = (squares - dot(&solved, &solved)).max(0.0) + PRIOR_COUNT * MARK_NOISE * MARK_NOISE;
         // The values have the prior of unit information, with which the logarithm of the probability is Schwarz's
         // criterion, divided by -2, if the points are independent.
-        let probability = -0.5 * (2.0 * n as f64 + PRIOR_COUNT) * maths::ln(squares)
-            - 2.0 * logarithms(&covariance)
-            - logarithms(&normal)
-            + logarithms(&products(&self.derivatives)?)
-            - 0.5 * select::penalty(p, 2 * n);
-        let noise = squares / (2.0 * n as f64 - p as f64 + PRIOR_COUNT);
-        let outcome =
-            Outcome { model, length, power, probability, noise, changes, rest, derivatives, covariance, normal };
-        probability.is_finite().then_some(outcome)
+        let probability = -0.5 * (count as f64 + PRIOR_COUNT) * maths::ln(squares)
+            - 2.0 * logarithm(&field.covariance)
+            - logarithm(&normal)
+            + problem.information
+            - 0.5 * select::penalty(p, count);
+        let noise = squares / (count as f64 - p as f64 + PRIOR_COUNT);
+        let changes = normal.backward(&solved);
+        probability.is_finite().then_some(Self { problem, field, probability, noise, rows, normal, changes })
     }
 
-    /// Returns mean and variance of the position of a place in the photo.
-    fn predict(&self, from: &Outcome, place: usize) -> (DVec2, f64) {
-        let (at, rows) = (self.places[place], &self.at_places[place]);
-        let near: Vec<f64> = self.at.iter().map(|p| from.power * likeness(at.distance(*p), from.length)).collect();
-        let near = from.covariance.forward(&near);
-        let (mut mean, mut variance) = (self.mapped[place], 2.0 * UNSEEN * (from.power - dot(&near, &near)));
+    /// Returns the residuals of one coordinate after the changes, made independent.
+    fn rest(&self, axis: usize) -> impl Iterator<Item = f64> {
+        let p = self.problem.values();
+        self.rows.chunks_exact(p + 1).skip(axis).step_by(2).map(move |row| row[p] - dot(&row[..p], &self.changes))
+    }
+
+    /// Returns mean and variance of the position of each place in the photo.
+    fn predict(&self, near: &Near) -> Vec<(DVec2, f64)> {
+        let p = self.problem.values();
+        let count = near.rest.len();
+        let mut variance: Vec<f64> = near.rest.iter().map(|rest| 2.0 * UNSEEN * rest).collect();
+        let mut mean = self.problem.mapped.clone();
         for axis in 0..2 {
-            let open: Vec<f64> =
-                rows.iter().zip(&from.derivatives[axis]).map(|(row, d)| row[axis] - dot(d, &near)).collect();
-            let open = from.normal.forward(&open);
-            variance += dot(&open, &open);
-            let changes = rows.iter().zip(&from.changes).map(|(row, change)| row[axis] * change);
-            mean[axis] += dot(&near, &from.rest[axis]) + changes.sum::<f64>();
+            let at_places = &self.problem.at_places[axis];
+            for (row, change) in at_places.chunks_exact(count).zip(&self.changes) {
+                mean.iter_mut().zip(row).for_each(|(mean, d)| mean[axis] += change * d);
+            }
+            let mut open = at_places.clone();
+            let rows = self.rows.chunks_exact(p + 1).skip(axis).step_by(2);
+            for ((row, rest), near) in rows.zip(self.rest(axis)).zip(near.rows.chunks_exact(count)) {
+                mean.iter_mut().zip(near).for_each(|(mean, v)| mean[axis] += rest * v);
+                for (open, d) in open.chunks_exact_mut(count).zip(row) {
+                    open.iter_mut().zip(near).for_each(|(open, v)| *open -= d * v);
+                }
+            }
+            self.normal.forward_all(&mut open);
+            for row in open.chunks_exact(count) {
+                variance.iter_mut().zip(row).for_each(|(variance, v)| *variance += v * v);
+            }
         }
-        (mean, from.noise * variance.max(0.0))
+        mean.into_iter().zip(variance).map(|(mean, v)| (mean, self.noise * v.max(0.0))).collect()
     }
-}
 
-/// Factorises the matrix of the products of the rows, summed over both coordinates.
-fn products(rows: &[Vec<Vec<f64>>; 2]) -> Option<Cholesky> {
-    let p = rows[0].len();
-    let product = |k: usize| (0..2).map(|c| dot(&rows[c][k / p], &rows[c][k % p])).sum();
-    Cholesky::new(p, (0..p * p).map(product).collect())
+    /// Returns the map for points at the given positions.
+    fn map(&self, at: Vec<DVec2>) -> ReliefMap {
+        let mut weights = Vec::new();
+        if self.field.power > 0.0 {
+            let [x, y] = [0, 1].map(|axis| self.field.covariance.backward(&self.rest(axis).collect::<Vec<f64>>()));
+            weights.extend(x.iter().zip(&y).map(|(x, y)| self.field.power * DVec2::new(*x, *y)));
+        }
+        let changes = self.changes.iter().zip(&self.problem.scales).map(|(c, s)| c / s).collect();
+        ReliefMap { model: self.problem.model.clone(), changes, weights, at, length: self.field.length }
+    }
 }

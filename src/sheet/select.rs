@@ -1,18 +1,15 @@
 //! Chooses which terms the map from page to photo has: as few as the points need.
 
-use super::model::{MapTerms, PageMap, Sighting};
+use super::model::{MAX_DEGREE, MAX_LENS, MapTerms, PageMap, Sighting};
 use crate::error::Result;
 use crate::job::Job;
 use crate::maths;
 use glam::DVec2;
 use std::f64::consts::FRAC_PI_8;
 
-/// Highest degree of the curve of the paper, and of the distortion of the lens.
-const MAX_DEGREE: usize = 4;
-const MAX_LENS: usize = 2;
 /// Number of angles of the generators that are tried, from 0 to π. From the best of them, the angle is fitted.
 const ANGLES: usize = 8;
-/// Number of sets whose angle is fitted.
+/// Number of maps whose angle is fitted.
 const TURNED: usize = 4;
 /// A set of terms is only considered if the coordinates of the points are at least this many more than its parameters.
 const MIN_REST: usize = 5;
@@ -20,6 +17,9 @@ const MIN_REST: usize = 5;
 /// times the variance of a point. [convention: flat paper with ten marks has about 8 / 20; the value of a set that the
 /// marks do not determine has no bound]
 const MAX_GAIN: f64 = 4.0;
+/// A set of terms is fitted if its criterion is expected to exceed that of flat paper by less than this: a set that
+/// exceeds it by more has a share below 1 in 1,000 of the probability of flat paper. [convention: 2 ln 1000]
+const MAX_EXCESS: f64 = 14.0;
 /// Standard deviation, in pixels of the photo, below which errors of marks are not told from zero: marks blurred by
 /// lens and paper are not located better than this. [convention: a fiftieth of a pixel]
 pub const MARK_NOISE: f64 = 0.02;
@@ -40,41 +40,46 @@ pub struct FittedMap {
 pub fn choose(flat: &PageMap, points: &[Sighting], places: &[DVec2], job: Job) -> Result<Vec<FittedMap>> {
     let coordinates = 2 * points.len();
     let is_determined = |terms: &MapTerms| terms.parameters() + MIN_REST <= coordinates;
-    let fitted = |model: PageMap, squares: f64| {
-        let is_stable =
-            model.terms == MapTerms::FLAT || model.gain(points, places).is_some_and(|gain| gain <= MAX_GAIN);
-        let criterion = if is_stable { criterion(&model.terms, squares, coordinates) } else { f64::INFINITY };
+    let fit = |model: PageMap| {
+        let (model, squares) = model.fit(points);
+        let criterion = criterion(&model.terms, squares, coordinates);
         FittedMap { model, squares, criterion }
     };
-    let (flat, squares) = flat.clone().fit(points);
-    let mut all = vec![fitted(flat.clone(), squares)];
+    let flat = fit(flat.clone());
+    let mut all = Vec::new();
     for terms in sets().filter(is_determined) {
         job.check()?;
-        let (model, squares) = flat.extended(terms).fit(points);
-        all.push(fitted(model, squares));
-    }
-    sort(&mut all);
-    for k in 0..TURNED.min(all.len()) {
-        job.check()?;
-        let turned = all[k].model.turned();
-        if all[k].model.terms.degree > 1 && is_determined(&turned.terms) {
-            let (model, squares) = turned.fit(points);
-            all.push(fitted(model, squares));
+        let start = flat.model.extended(terms);
+        if criterion(&terms, start.expected_squares(points), coordinates) < flat.criterion + MAX_EXCESS {
+            all.push(fit(start));
         }
     }
-    sort(&mut all);
+    all.push(flat);
+    let mut chosen = distinct(all, points, places);
+    for k in 0..TURNED.min(chosen.len()) {
+        job.check()?;
+        let turned = chosen[k].model.turned();
+        if turned.terms.degree > 1 && is_determined(&turned.terms) {
+            chosen.push(fit(turned));
+        }
+    }
+    Ok(distinct(chosen, points, places))
+}
+
+/// Keeps the best map of each degree and number of coefficients of the lens among those that the points determine, and
+/// sorts them, the best one first.
+fn distinct(mut all: Vec<FittedMap>, points: &[Sighting], places: &[DVec2]) -> Vec<FittedMap> {
+    all.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
+    let key = |f: &FittedMap| (f.model.terms.degree, f.model.terms.lens);
     let mut chosen: Vec<FittedMap> = Vec::new();
     for fitted in all {
-        let key = |f: &FittedMap| (f.model.terms.degree, f.model.terms.lens);
-        if chosen.iter().all(|f| key(f) != key(&fitted)) && (fitted.criterion < f64::INFINITY || chosen.is_empty()) {
+        let is_new = || chosen.iter().all(|f| key(f) != key(&fitted));
+        let is_stable = || fitted.model.gain(points, places).is_some_and(|gain| gain <= MAX_GAIN);
+        if is_new() && (fitted.model.terms == MapTerms::FLAT || fitted.criterion.is_finite() && is_stable()) {
             chosen.push(fitted);
         }
     }
-    Ok(chosen)
-}
-
-fn sort(all: &mut [FittedMap]) {
-    all.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
+    chosen
 }
 
 /// All sets of terms except those of flat paper without distortion, at fixed angles.

@@ -116,8 +116,9 @@ impl View {
         let place = ((axis.dot(p) / self.length + 0.5) * STEPS as f64).clamp(-1e3, STEPS as f64 + 1e3);
         let first = place.clamp(0.0, (STEPS - 1) as f64) as usize;
         let on_curve = self.curve[first].lerp(self.curve[first + 1], place - first as f64);
-        let relief = self.waves.iter().map(|(along, phase)| (along.dot(p) + phase).cos()).sum::<f64>();
-        let relief = relief * self.defects.relief[0] * self.page.max_element() * (2.0 / WAVES as f64).sqrt();
+        let height = self.defects.relief[0] * self.page.max_element() * (2.0 / WAVES as f64).sqrt();
+        let waves = if height == 0.0 { &[] } else { self.waves.as_slice() };
+        let relief = height * waves.iter().map(|(along, phase)| (along.dot(p) + phase).cos()).sum::<f64>();
         let flat = on_curve.x * axis + axis.perp_dot(p) * axis.perp();
         let q = self.turn * flat.extend(on_curve.y + relief) + DVec3::new(0.0, 0.0, self.distance);
         if q.z <= 0.05 * self.distance {
