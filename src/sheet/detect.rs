@@ -84,8 +84,9 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
         if y == 0 || y + 1 >= height {
             return;
         }
+        let rows = [image.row(y - 1), image.row(y), image.row(y + 1)];
         for x in 1..width.saturating_sub(1) {
-            let v = |dx: usize, dy: usize| image.pixel(x + dx - 1, y + dy - 1)[0];
+            let v = |dx: usize, dy: usize| rows[dy][x + dx - 1];
             let xx = v(0, 1) + v(2, 1) - 2.0 * v(1, 1);
             let yy = v(1, 0) + v(1, 2) - 2.0 * v(1, 1);
             let xy = (v(0, 0) + v(2, 2) - v(2, 0) - v(0, 2)) / 4.0;
@@ -95,8 +96,7 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     let radius_in_pixels = (NEIGHBOURHOOD * sigma).ceil() as usize;
     let rows = exec::map(height, job, |y| {
         let mut row = Vec::new();
-        for x in 0..width {
-            let here = response.pixel(x, y)[0];
+        for (x, &here) in response.row(y).iter().enumerate() {
             if here < MIN_RESPONSE {
                 continue;
             }
