@@ -99,7 +99,7 @@ fn photograph(sheet: &Image, defects: Defects, seed: u64) -> (Image, View) {
     let mut numbers = Numbers(seed);
     for (i, pixel) in photo.data.chunks_exact_mut(3).enumerate() {
         let light = 0.9 - 0.45 * (i % PHOTO.x as usize) as f32 / PHOTO.x as f32;
-        pixel.iter_mut().for_each(|v| *v = v.max(0.03) * light + NOISE * numbers.normal() as f32);
+        pixel.iter_mut().for_each(|v| *v = v.max(0.03) * light + NOISE * numbers.noise() as f32);
     }
     (photo, view)
 }

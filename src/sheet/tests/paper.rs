@@ -45,6 +45,11 @@ impl Numbers {
         (z ^ (z >> 31)) as f64 / u64::MAX as f64
     }
 
+    /// Noise with standard deviation 1; faster than [`Self::normal`].
+    pub fn noise(&mut self) -> f64 {
+        12.0f64.sqrt() * (self.uniform() - 0.5)
+    }
+
     pub fn normal(&mut self) -> f64 {
         (-2.0 * self.uniform().max(1e-12).ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
     }
