@@ -13,8 +13,8 @@ use std::f64::consts::FRAC_PI_2;
 /// Size of a photo, and of the printed picture, in pixels.
 const PHOTO: DVec2 = DVec2::new(1300.0, 1000.0);
 const PICTURE: [usize; 2] = [160, 120];
-/// Number of photos of each kind, and their greatest tilt in degrees. Their seeds are 0 and up; the constants of `sheet`
-/// were chosen by photos with the seeds from `CHOSEN_BY` on.
+/// Number of photos of each kind, and their greatest tilt in degrees. Their seeds are 0 and up; the constants of the
+/// sheets were chosen by photos with the seeds from `CHOSEN_BY` on.
 const PHOTOS: u64 = 12;
 const CHOSEN_BY: u64 = 1000;
 const TILT: f64 = 45.0;
