@@ -3,6 +3,7 @@
 //! seconds. Arguments select sections.
 //!
 //! - `sheet`: photos of printed sheets, by lenses with and without distortion, beside a chequered cloth.
+//! - `bent`: photos of bent and crumpled sheets, and by lenses with distortion.
 //! - `surface`: the ceiling of a storey, below another storey or below the sky.
 //! - `colour`: the colour of a clipped plane, and of a plane with glare around its lamps.
 //! - `types`: lamps of one and of two sizes on a grid of texels.
@@ -14,6 +15,8 @@
 //! - `motion`: the points of a frame that the frame before hides.
 //! - `paint`: a picture painted by the guides of light, or by all guides, against the same picture by the artist.
 
+#[path = "constants/bent.rs"]
+mod bent;
 #[path = "constants/colour.rs"]
 mod colour;
 #[path = "constants/guides.rs"]
@@ -21,6 +24,8 @@ mod guides;
 mod harness;
 #[path = "constants/lamps.rs"]
 mod lamps;
+#[path = "../src/sheet/tests/paper.rs"]
+mod paper;
 #[path = "constants/sheet.rs"]
 mod sheet;
 #[path = "constants/surface.rs"]
@@ -30,8 +35,9 @@ use luxfer::exec::Pool;
 
 fn main() {
     let chosen: Vec<String> = std::env::args().skip(1).filter(|a| !a.starts_with('-')).collect();
-    let sections: [(&str, fn()); 11] = [
+    let sections: [(&str, fn()); 12] = [
         ("sheet", sheet::sheet),
+        ("bent", bent::bent),
         ("surface", surface::surface),
         ("colour", colour::colour),
         ("types", lamps::types),

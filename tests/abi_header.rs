@@ -684,7 +684,7 @@ layouts! {
     luxfer_merge_report: struct_size count reference reserved clipped moved exposures errors stated shift_x shift_y
         tone_curve contradicts_srgb tone_curve_error tone_curve_light;
     luxfer_sheet_params: struct_size even_light paper_width paper_height dpi margin contrast;
-    luxfer_sheet_report: struct_size marks residual error to_photo;
+    luxfer_sheet_report: struct_size marks residual error to_photo bend dots reserved;
     luxfer_guides_params: struct_size width height samples camera smooth seed;
     luxfer_stylize_params: struct_size search patch guide_weight coarse_guides levels iterations coarse_iterations
         finest_iterations polish search_iterations coverage passes settle seam vote final_vote preview keep_for_update

@@ -1,7 +1,7 @@
 //! Photos by lenses with distortion: of printed sheets, and of drawings with straight edges.
 
 use crate::harness::{figure, median, quantile};
-use glam::DVec2;
+use glam::{DMat2, DVec2};
 use luxfer::geometry::Homography;
 use luxfer::image::Image;
 use luxfer::job::Monitor;
@@ -26,6 +26,15 @@ fn undistorted(p: DVec2, distortion: f64) -> DVec2 {
     half + q * (1.0 - distortion * q.length_squared() / half.length_squared())
 }
 
+/// The place where a lens with distortion shows what an ideal lens shows at `p`.
+fn distorted(p: DVec2, distortion: f64) -> DVec2 {
+    let mut shown = p;
+    for _ in 0..20 {
+        shown += p - undistorted(shown, distortion);
+    }
+    shown
+}
+
 /// Prints the share of the photos of sheets that are aligned, and the error of these in pixels of the picture.
 pub fn sheet() {
     let job = Monitor::default();
@@ -36,16 +45,20 @@ pub fn sheet() {
     });
     let printed = print(&picture.expect("a picture"), &params, job.job()).expect("a sheet");
     // Find the place of the picture on the sheet by the sheet itself.
-    let on_sheet = align(&printed, PICTURE[0], PICTURE[1], &params, job.job()).expect("a sheet").to_photo;
+    let on_sheet = align(&printed, PICTURE[0], PICTURE[1], &params, job.job()).expect("a sheet").map;
     let (mut errors, mut aligned, mut count) = (Vec::new(), 0, 0);
     for distortion in LENSES {
         for seed in 0..PHOTOS {
             let (photo, to_photo) = photograph(&printed, distortion, seed);
             count += 1;
             let Ok(found) = align(&photo, PICTURE[0], PICTURE[1], &params, job.job()) else { continue };
-            let back = found.to_photo.inverse();
             let corners = [[0.0, 0.0], [160.0, 0.0], [160.0, 120.0], [0.0, 120.0], [80.0, 60.0]].map(DVec2::from);
-            let off = |p: DVec2| back.apply(to_photo.apply(on_sheet.apply(p))).distance(p);
+            let off = |p: DVec2| {
+                let seen = distorted(to_photo.apply(on_sheet.apply(p)), distortion);
+                let [x, y] =
+                    [DVec2::X, DVec2::Y].map(|step| found.map.apply(p + 0.5 * step) - found.map.apply(p - 0.5 * step));
+                (DMat2::from_cols(x, y).inverse() * (seen - found.map.apply(p))).length()
+            };
             let worst = corners.into_iter().map(off).fold(0.0, f64::max);
             if worst < ALIGNED {
                 aligned += 1;

@@ -594,8 +594,8 @@ luxfer_status luxfer_stylize_get_report(luxfer_stylize *stylize,
  * Print sheets
  *
  * For artists who paint on paper: draws a sheet to print, which shows the exemplar in pale colours between alignment
- * marks, and aligns a photo or scan of the painted sheet with the exemplar by these marks. These calls are
- * synchronous: they do their work before they return.
+ * marks, and aligns a photo or scan of the painted sheet with the exemplar by these marks. The paper may be bent, and
+ * the lens may distort. These calls are synchronous: they do their work before they return.
  * ================================================================================================================== */
 
 /**
@@ -634,20 +634,37 @@ typedef struct luxfer_sheet_report {
     /** Number of marks found, of 10; at least 6 are needed. */
     uint32_t marks;
     /**
-     * Root mean square distance, in pixels of the photo, between the found marks and the positions that to_photo
-     * predicts for them. If it is more than one or two pixels, the paper is not flat or the lens distorts.
+     * Root mean square distance, in pixels of the photo, between the marks and dots found and the positions that the
+     * model of the sheet predicts for them: paper that is flat or bent in one direction, and a lens with radial
+     * distortion. If it is more than about half a pixel, the paper has waves or creases, or is bent in two directions.
      */
     double residual;
-    /** Expected alignment error in pixels of the picture, from the residual and the number of marks. */
+    /**
+     * Standard deviation of the alignment in pixels of the picture: the root mean square distance, over the picture,
+     * between true and found positions is below 1.96 times this value with a probability of about 95 %. It grows with
+     * what the model of the sheet does not hold.
+     */
     double error;
-    /** Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row. */
+    /**
+     * The homography from pixels of the picture to pixels of the photo that is nearest to the alignment, 3 x 3, row by
+     * row. The alignment itself also follows the bent paper and the distortion of the lens.
+     */
     double to_photo[9];
+    /**
+     * Root mean square distance, in pixels of the picture, between the alignment and to_photo: the error that an
+     * alignment by a homography would have. It is 0 for flat paper and a lens without distortion.
+     */
+    double bend;
+    /** Number of dots found between the marks. Sheets printed by versions before 0.2 have none. */
+    uint32_t dots;
+    /** 0. */
+    uint32_t reserved;
 } luxfer_sheet_report;
 
 /**
  * Draws the sheet to print for a picture (linear, 1 is white; 1, 3 or 4 channels). The sheet shows the picture in
- * pale colours, as large as the paper allows, with ten marks around it. Save it as PNG and print it at params->dpi
- * without scaling. params may be NULL for the defaults. The caller releases *sheet. Any thread.
+ * pale colours, as large as the paper allows, with ten marks and small dots around it. Save it as PNG and print it at
+ * params->dpi without scaling. params may be NULL for the defaults. The caller releases *sheet. Any thread.
  * LUXFER_INVALID_ARGUMENT if a setting is out of range or the paper is too small; LUXFER_OUT_OF_MEMORY beyond the
  * memory budget.
  */
@@ -659,8 +676,10 @@ luxfer_status luxfer_sheet_print(luxfer_image *picture,
  * Aligns a photo or scan (linear RGB) of a painted sheet with the picture of width x height pixels for which the
  * sheet was printed. The call finds the marks in the photo and resamples the photo to the pixels of the picture: the
  * result is the artwork, in linear RGB. params must be equal to the settings given to luxfer_sheet_print; NULL stands
- * for the defaults. The photo may be rotated and in perspective. size is sizeof *report; report may be NULL, then size
- * does not matter. The call takes up to a few seconds. The caller releases *artwork. Any thread.
+ * for the defaults. The photo may be rotated and in perspective, the paper may be bent, and the lens may have radial
+ * distortion about the centre of the photo. Sheets without dots, printed by versions before 0.2, are aligned too, less
+ * exactly if they are bent. size is sizeof *report; report may be NULL, then size does not matter. The call takes up
+ * to a few seconds. The caller releases *artwork. Any thread.
  * LUXFER_DEGENERATE if fewer than six marks are found; LUXFER_INVALID_ARGUMENT if a setting is out of range.
  */
 luxfer_status luxfer_sheet_align(luxfer_image *photo,

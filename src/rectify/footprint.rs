@@ -1,6 +1,7 @@
-//! Computes the footprints of a run of output pixels, for resampling through a homography and the distortion of a lens:
-//! the position and extent of each pixel in the source.
+//! Computes the footprints of a run of output pixels, for resampling through a homography and the distortion of a lens,
+//! or through a map that is given on a grid: the position and extent of each pixel in the source.
 
+use super::grid_map::{GridMap, NODES, weights};
 use crate::geometry::Radial;
 use crate::geometry::radial::magnification;
 use glam::DVec2;
@@ -56,6 +57,8 @@ pub struct Map {
     pub front: f64,
     /// The distortion of the lens that took the source; `None` if it has none.
     pub lens: Option<Radial>,
+    /// A map that is used instead of the homography and the lens.
+    pub grid: Option<GridMap>,
     /// Size of the source in pixels.
     pub size: [f64; 2],
 }
@@ -63,9 +66,10 @@ pub struct Map {
 /// Computes the footprints of a run of pixels that begins at column `first` of a row.
 #[inline(always)]
 pub fn locate(map: &Map, row: usize, first: usize, to: &mut Footprints) {
-    match map.lens {
-        None => locate_through(map, |x, y| (x, y), row, first, to),
-        Some(Radial { centre, bend }) => {
+    match (&map.grid, map.lens) {
+        (Some(grid), _) => locate_on_grid(grid, map.size, row, first, to),
+        (None, None) => locate_through(map, |x, y| (x, y), row, first, to),
+        (None, Some(Radial { centre, bend })) => {
             let shown = |x: f64, y: f64| {
                 let (x, y) = (x - centre.x, y - centre.y);
                 let factor = magnification(bend * (x * x + y * y));
@@ -79,7 +83,7 @@ pub fn locate(map: &Map, row: usize, first: usize, to: &mut Footprints) {
 /// Computes the footprints for [`locate`]. `shown` maps the pixels of an ideal lens to the pixels of the source.
 #[inline(always)]
 fn locate_through(
-    Map { to_source: map, front, lens, size }: &Map,
+    Map { to_source: map, front, lens, size, grid: _ }: &Map,
     shown: impl Fn(f64, f64) -> (f64, f64),
     row: usize,
     first: usize,
@@ -110,27 +114,75 @@ fn locate_through(
             None => ((a, b), (c, d)),
             Some(lens) => through_lens(lens, shown(qx, qy), [a, b, c, d]),
         };
-        let (xx, xy, yy, determinant) = (a * a + b * b, a * c + b * d, c * c + d * d, a * d - b * c);
-        let half = 0.5 * (xx - yy);
-        let radius = (half * half + xy * xy).sqrt();
-        let squared_major_axis = 0.5 * (xx + yy) + radius;
-        let squared_minor_axis = determinant * determinant / squared_major_axis.max(f32::MIN_POSITIVE);
-
-        // Widen both axes to at least 1: scale J Jᵀ and add a multiple of the identity.
-        let (high, low) = (squared_major_axis.max(1.0), squared_minor_axis.max(1.0));
-        let scale = if squared_minor_axis >= 1.0 {
-            1.0
-        } else if squared_major_axis <= 1.0 {
-            0.0
-        } else {
-            (high - low) / (2.0 * radius)
-        };
-        let added = if squared_minor_axis >= 1.0 { 0.0 } else { low - scale * squared_minor_axis };
-        let yy = scale * yy + added;
-        let height = yy.sqrt();
-        (shapes[0][i], shapes[1][i]) = ((high * low).sqrt() / height, height);
-        (shapes[2][i], shapes[3][i]) = (scale * xy / yy, squared_major_axis);
+        set(&mut shapes, i, shape(a, b, c, d));
     }
+    share(&shapes, to);
+}
+
+/// Computes the footprints for [`locate`] through a map that is given on a grid.
+#[inline(always)]
+fn locate_on_grid(grid: &GridMap, size: [f64; 2], row: usize, first: usize, to: &mut Footprints) {
+    let on_row: [[DVec2; 2]; NODES] = std::array::from_fn(|node| grid.on_row(row as f64 + 0.5, node));
+    let width = grid.width as f64;
+    for i in 0..RUN {
+        let (node, across) = weights((first as f64 + (i as f64 + 0.5)) / width);
+        let mut at = DVec2::ZERO;
+        for k in 0..4 {
+            at += across.value[k] * on_row[node + k][0];
+        }
+        let seen = (at.x >= 0.0) & (at.y >= 0.0) & (at.x <= size[0]) & (at.y <= size[1]);
+        to.is_seen[i] = seen;
+        (to.x[i], to.y[i]) = if seen { (at.x, at.y) } else { (0.0, 0.0) };
+    }
+    let mut shapes = [[0.0f32; RUN / SHARED]; 4];
+    for i in 0..RUN / SHARED {
+        let (node, across) = weights((first as f64 + (i * SHARED + SHARED / 2) as f64) / width);
+        let (mut by_x, mut by_y) = (DVec2::ZERO, DVec2::ZERO);
+        for k in 0..4 {
+            by_x += across.slope[k] / width * on_row[node + k][0];
+            by_y += across.value[k] * on_row[node + k][1];
+        }
+        let part = |v: f64| (v as f32).max(-MAX_DERIVATIVE).min(MAX_DERIVATIVE);
+        set(&mut shapes, i, shape(part(by_x.x), part(by_y.x), part(by_x.y), part(by_y.y)));
+    }
+    share(&shapes, to);
+}
+
+/// Returns width, height, shear and squared major axis of the footprint whose Jacobian has the rows `[a, b]` and
+/// `[c, d]`.
+#[inline(always)]
+fn shape(a: f32, b: f32, c: f32, d: f32) -> [f32; 4] {
+    let (xx, xy, yy, determinant) = (a * a + b * b, a * c + b * d, c * c + d * d, a * d - b * c);
+    let half = 0.5 * (xx - yy);
+    let radius = (half * half + xy * xy).sqrt();
+    let squared_major_axis = 0.5 * (xx + yy) + radius;
+    let squared_minor_axis = determinant * determinant / squared_major_axis.max(f32::MIN_POSITIVE);
+
+    // Widen both axes to at least 1: scale J Jᵀ and add a multiple of the identity.
+    let (high, low) = (squared_major_axis.max(1.0), squared_minor_axis.max(1.0));
+    let scale = if squared_minor_axis >= 1.0 {
+        1.0
+    } else if squared_major_axis <= 1.0 {
+        0.0
+    } else {
+        (high - low) / (2.0 * radius)
+    };
+    let added = if squared_minor_axis >= 1.0 { 0.0 } else { low - scale * squared_minor_axis };
+    let yy = scale * yy + added;
+    let height = yy.sqrt();
+    [(high * low).sqrt() / height, height, scale * xy / yy, squared_major_axis]
+}
+
+#[inline(always)]
+fn set(shapes: &mut [[f32; RUN / SHARED]; 4], i: usize, shape: [f32; 4]) {
+    for k in 0..4 {
+        shapes[k][i] = shape[k];
+    }
+}
+
+/// Gives the shapes to the pixels that share them.
+#[inline(always)]
+fn share(shapes: &[[f32; RUN / SHARED]; 4], to: &mut Footprints) {
     for (shape, to) in shapes.iter().zip([&mut to.width, &mut to.height, &mut to.shear, &mut to.squared_major_axis]) {
         to.chunks_exact_mut(SHARED).zip(shape).for_each(|(to, value)| to.fill(*value));
     }

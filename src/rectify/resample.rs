@@ -1,5 +1,5 @@
-//! Resampling through a homography, and through the distortion of a lens: bicubic interpolation (Catmull-Rom) where the
-//! source is magnified, the mean over the pixel's footprint where it is minified.
+//! Resampling through a homography, the distortion of a lens, or a map given on a grid: bicubic interpolation
+//! (Catmull-Rom) where the source is magnified, the mean over the pixel's footprint where it is minified.
 //!
 //! The parallelogram that a pixel covers is replaced by the sheared rectangle with the same second moments (see
 //! [`Footprints`]). Rectangles large in both directions are sampled from a coarser level of a pyramid. Rectangles that
@@ -8,6 +8,7 @@
 
 use super::footprint::{Footprints, Map, RUN, extent, locate};
 use super::gather::{store, sum};
+use super::grid_map::GridMap;
 use super::taps::{MAX_SIDE, Part, Taps, weigh};
 use crate::error::{Error, Result};
 use crate::exec;
@@ -55,16 +56,33 @@ pub fn warp_photo(source: &Image, to_source: &PhotoMap, width: usize, height: us
             lens.centre, lens.bend
         )));
     }
-    let mut out = Image::new(width, height, source.channels)?;
     let map = Map {
         to_source: homography.0.to_cols_array(),
         front: homography.apply_homogeneous(DVec2::new(width as f64, height as f64) / 2.0).z.signum(),
         lens: (!lens.is_none()).then_some(*lens),
+        grid: None,
         size: [source.width as f64, source.height as f64],
     };
-    let target = Target { map, width };
+    resample(source, &Target { map, width }, height, job)
+}
 
-    let wanted = exec::map(height.div_ceil(BAND), job.part(0.0, 0.05), |band| highest_level(&target, band * BAND))?;
+/// Like [`warp`], but resamples through a map that is given on a grid.
+pub fn warp_grid(source: &Image, to_source: &GridMap, job: Job) -> Result<Image> {
+    let map = Map {
+        to_source: [0.0; 9],
+        front: 1.0,
+        lens: None,
+        grid: Some(to_source.try_clone()?),
+        size: [source.width as f64, source.height as f64],
+    };
+    resample(source, &Target { map, width: to_source.width }, to_source.height, job)
+}
+
+fn resample(source: &Image, target: &Target, height: usize, job: Job) -> Result<Image> {
+    let width = target.width;
+    let mut out = Image::new(width, height, source.channels)?;
+
+    let wanted = exec::map(height.div_ceil(BAND), job.part(0.0, 0.05), |band| highest_level(target, band * BAND))?;
     let wanted = wanted.into_iter().max().unwrap_or(0);
     let smaller = pyramid::halvings(source, wanted, job.part(0.05, 0.2))?;
     let levels: Vec<&Image> = std::iter::once(source).chain(&smaller).collect();
@@ -73,7 +91,7 @@ pub fn warp_photo(source: &Image, to_source: &PhotoMap, width: usize, height: us
     let job = job.part(0.2, 1.0);
     let done = AtomicUsize::new(0);
     exec::for_runs(&mut out.data, BAND * row_len, job, |first, band| {
-        fill(Level::widest(), &levels, &target, first / row_len, band);
+        fill(Level::widest(), &levels, target, first / row_len, band);
         let rows = done.fetch_add(BAND, Ordering::Relaxed) + BAND;
         job.report(rows.min(height) as f64 / height as f64);
     })?;

@@ -84,8 +84,9 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
         if y == 0 || y + 1 >= height {
             return;
         }
+        let rows = [image.row(y - 1), image.row(y), image.row(y + 1)];
         for x in 1..width.saturating_sub(1) {
-            let v = |dx: usize, dy: usize| image.pixel(x + dx - 1, y + dy - 1)[0];
+            let v = |dx: usize, dy: usize| rows[dy][x + dx - 1];
             let xx = v(0, 1) + v(2, 1) - 2.0 * v(1, 1);
             let yy = v(1, 0) + v(1, 2) - 2.0 * v(1, 1);
             let xy = (v(0, 0) + v(2, 2) - v(2, 0) - v(0, 2)) / 4.0;
@@ -95,8 +96,7 @@ fn saddles(image: &Image, sigma: f32, job: Job) -> Result<Vec<(usize, usize)>> {
     let radius_in_pixels = (NEIGHBOURHOOD * sigma).ceil() as usize;
     let rows = exec::map(height, job, |y| {
         let mut row = Vec::new();
-        for x in 0..width {
-            let here = response.pixel(x, y)[0];
+        for (x, &here) in response.row(y).iter().enumerate() {
             if here < MIN_RESPONSE {
                 continue;
             }
@@ -137,6 +137,15 @@ fn quadrants(image: &Image, at: DVec2, radius: f64) -> f64 {
     let share = amplitude * amplitude / 2.0 / power.max(1e-12);
     if share > MIN_HARMONIC && amplitude > MIN_CONTRAST { amplitude * share } else { 0.0 }
 }
+
+/// Whether a mark of the given radius, in pixels, surrounds a position.
+pub fn is_mark(grey: &Image, at: DVec2, radius: f64) -> bool {
+    CIRCLE_SHARES.iter().all(|share| quadrants(grey, at, share * radius) > 0.0)
+}
+
+/// Radii of the circles on which the quadrants of a mark of known size must show, in units of its radius. [convention:
+/// well inside the mark]
+const CIRCLE_SHARES: [f64; 2] = [0.4, 0.7];
 
 /// Refines a saddle to sub-pixel precision (Förstner and Gülch 1987). At the corner q of black and white quadrants, the
 /// gradient g at each surrounding point p is perpendicular to p - q. The result minimises Σ w (g · (p - q))², with

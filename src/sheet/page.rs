@@ -26,6 +26,13 @@ const MARKS: [[f64; 2]; 10] = [
     [0.0, 0.32],
 ];
 
+/// Radius of a dot, and minimum distance between its edge and that of a mark or another dot, in millimetres.
+/// [convention]
+const DOT_RADIUS: f64 = 1.0;
+const DOT_CLEARANCE: f64 = 2.0;
+/// The dots divide each side of the rectangle of the marks into this many equal parts.
+const DOTS: usize = 12;
+
 /// The arrangement of the page, in page pixels.
 pub struct Page {
     pub width: usize,
@@ -33,6 +40,10 @@ pub struct Page {
     /// Centres of the marks in the order of [`MARKS`] (`marks`), and their common `radius`.
     pub marks: [DVec2; 10],
     pub radius: f64,
+    /// Centres of the dots between the marks (`dots`), and their common radius. Sheets printed by versions before 0.2
+    /// have none.
+    pub dots: Vec<DVec2>,
+    pub dot_radius: f64,
     /// Top-left corner (`corner`) and size (`size`) of the picture, each x and y.
     pub corner: [f64; 2],
     pub size: [f64; 2],
@@ -51,6 +62,7 @@ impl Page {
         let low = DVec2::splat((params.margin + RADIUS) * dot);
         // Round to pixel corners, so that the quadrants are drawn exactly.
         let marks = MARKS.map(|m| (low + DVec2::from(m) * (extent - 2.0 * low)).round());
+        let dots = dots(&marks, dot);
         let inner = DVec2::splat((params.margin + 2.0 * RADIUS + CLEARANCE) * dot);
         let available = extent - 2.0 * inner;
         if picture_width == 0 || picture_height == 0 || available.min_element() < 4.0 * RADIUS * dot {
@@ -69,6 +81,8 @@ impl Page {
             height: extent.y as usize,
             marks,
             radius: RADIUS * dot,
+            dots,
+            dot_radius: DOT_RADIUS * dot,
             corner: corner.to_array(),
             size: size.to_array(),
         })
@@ -80,19 +94,47 @@ impl Page {
         Homography(DMat3::from_translation(self.corner.into()) * DMat3::from_scale(scale))
     }
 
-    /// Returns the brightness of a pixel of the page due to its marks alone; 1 away from the marks.
+    /// Returns the brightness of a pixel of the page due to its marks and dots; 1 away from them.
     pub fn mark_shade(&self, x: usize, y: usize) -> f32 {
         let centre = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
-        if self.marks.iter().all(|m| m.distance(centre) > self.radius + 1.0) {
-            return 1.0;
+        let nearest =
+            |places: &[DVec2], radius: f64| places.iter().copied().find(|place| place.distance(centre) <= radius + 1.0);
+        let share = |is_black: &dyn Fn(DVec2) -> bool| {
+            // Estimate the share of the pixel that is black by supersampling.
+            let sample =
+                |i: usize| DVec2::new(x as f64 + (i % 4) as f64 / 4.0 + 0.125, y as f64 + (i / 4) as f64 / 4.0 + 0.125);
+            1.0 - (0..16).filter(|&i| is_black(sample(i))).count() as f32 / 16.0
+        };
+        if let Some(mark) = nearest(&self.marks, self.radius) {
+            share(&|p| mark.distance(p) < self.radius && (p.x - mark.x) * (p.y - mark.y) > 0.0)
+        } else if let Some(dot) = nearest(&self.dots, self.dot_radius) {
+            share(&|p| dot.distance(p) < self.dot_radius)
+        } else {
+            1.0
         }
-        // Estimate the share of the pixel that is black by supersampling.
-        let mut black = 0;
-        for i in 0..16 {
-            let p = DVec2::new(x as f64 + (i % 4) as f64 / 4.0 + 0.125, y as f64 + (i / 4) as f64 / 4.0 + 0.125);
-            let inside = |m: &&DVec2| m.distance(p) < self.radius;
-            black += usize::from(self.marks.iter().find(inside).is_some_and(|m| (p.x - m.x) * (p.y - m.y) > 0.0));
-        }
-        1.0 - black as f32 / 16.0
     }
+}
+
+/// Returns the centres of the dots, which lie on the rectangle of the marks; `dot` is the number of page pixels per
+/// millimetre. A place too near to a mark, or to the dot before it, has no dot.
+fn dots(marks: &[DVec2], dot: f64) -> Vec<DVec2> {
+    let [low, high] = [marks[0], marks[2]];
+    let mut dots: Vec<DVec2> = Vec::new();
+    for k in 0..4 * DOTS {
+        let along = (k % DOTS) as f64 / DOTS as f64;
+        let share = [
+            DVec2::new(along, 0.0),
+            DVec2::new(1.0, along),
+            DVec2::new(1.0 - along, 1.0),
+            DVec2::new(0.0, 1.0 - along),
+        ];
+        // Round to pixel corners, so that the disk is drawn symmetrically.
+        let place = (low + share[k / DOTS] * (high - low)).round();
+        let is_apart =
+            |other: &DVec2, radius: f64| other.distance(place) >= (radius + DOT_RADIUS + DOT_CLEARANCE) * dot;
+        if marks.iter().all(|m| is_apart(m, RADIUS)) && dots.iter().all(|d| is_apart(d, DOT_RADIUS)) {
+            dots.push(place);
+        }
+    }
+    dots
 }

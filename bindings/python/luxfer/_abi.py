@@ -1610,6 +1610,9 @@ class luxfer_sheet_report(Structure):
         ("residual", c_double),
         ("error", c_double),
         ("to_photo", c_double * 9),
+        ("bend", c_double),
+        ("dots", c_uint32),
+        ("reserved", c_uint32),
     ]
     result = types.SheetReport
 

@@ -2825,13 +2825,22 @@ class SheetReport:
     marks: int
     """Number of marks found, of 10; at least 6 are needed."""
     residual: float
-    """Root mean square distance, in pixels of the photo, between the found marks and the positions that
-    to_photo predicts for them. If it is more than one or two pixels, the paper is not flat or the lens
-    distorts."""
+    """Root mean square distance, in pixels of the photo, between the marks and dots found and the positions
+    that the model of the sheet predicts for them: paper that is flat or bent in one direction, and a lens with
+    radial distortion. If it is more than about half a pixel, the paper has waves or creases, or is bent in two
+    directions."""
     error: float
-    """Expected alignment error in pixels of the picture, from the residual and the number of marks."""
+    """Standard deviation of the alignment in pixels of the picture: the root mean square distance, over the
+    picture, between true and found positions is below 1.96 times this value with a probability of about 95 %.
+    It grows with what the model of the sheet does not hold."""
     to_photo: tuple[float, ...]
-    """Homography from pixels of the picture to pixels of the photo, 3 x 3, row by row."""
+    """The homography from pixels of the picture to pixels of the photo that is nearest to the alignment, 3 x 3,
+    row by row. The alignment itself also follows the bent paper and the distortion of the lens."""
+    bend: float
+    """Root mean square distance, in pixels of the picture, between the alignment and to_photo: the error that
+    an alignment by a homography would have. It is 0 for flat paper and a lens without distortion."""
+    dots: int
+    """Number of dots found between the marks. Sheets printed by versions before 0.2 have none."""
 
 
 class PlanParams(TypedDict, total=False):

@@ -18,9 +18,8 @@ SUMMARY = "print a sheet to paint on, read a photo of it"
 
 #: Width and height of papers in landscape format, in millimetres.
 PAPERS = {"a5": (210.0, 148.0), "a4": (297.0, 210.0), "a3": (420.0, 297.0), "letter": (279.4, 215.9)}
-#: A warning says that the paper is not flat if its marks lie farther than this from their expected positions, in pixels
-#: of the photo.
-UNEVEN = 2.0
+#: A warning says that the alignment is not exact if its stated error is more than this, in pixels of the picture.
+UNEVEN = 0.5
 
 
 def add(parser: argparse.ArgumentParser) -> None:
@@ -139,11 +138,14 @@ def read(args: argparse.Namespace, console: Console) -> Exit:
         "marks": report.marks,
         "error_pixels": report.error,
         "residual_pixels": report.residual,
+        "dots": report.dots,
+        "bend_pixels": report.bend,
     }
     doubts = []
-    if report.residual > UNEVEN:
+    if report.error > UNEVEN:
         message = (
-            f"the marks are {report.residual:.1f} pixels off their places: the paper is not flat, or the lens distorts"
+            f"the alignment may be {1.96 * report.error:.1f} pixels wrong: the paper has waves or creases, or marks "
+            "are covered"
         )
         doubts.append(doubt("sheet", "uneven", message, "try a scanner, or flatten the paper"))
     return console.print_result(result, [f"{report.marks} of 10 marks; aligned within {report.error:.2f} pixels"], doubts)
