@@ -829,10 +829,10 @@ typedef struct luxfer_warning {
 #define LUXFER_WARNING_BLEMISH 31
 
 /**
- * The sizes of the lamps in the photo contradict the perspective of the plane: the lamps hang or lie on several planes,
- * the mask of the lights shows other things, or the camera is wrong. Where the photo shows the plane k times as large, it
- * would show lamps on the plane k times as large, but shows these lamps k^severity times as large. Only luxfer_transfer
- * compares them, because luxfer_rectify does not know the lamps.
+ * The sizes of the lamps in the photo contradict the perspective of the plane: the lamps hang or lie on several
+ * planes, the mask of the lights shows other things, or the camera is wrong. Where the photo shows the plane k times
+ * as large, it would show lamps on the plane k times as large, but shows these lamps k^severity times as large. Only
+ * luxfer_transfer compares them, because luxfer_rectify does not know the lamps.
  */
 #define LUXFER_WARNING_OFF_PLANE 32
 

@@ -134,10 +134,10 @@ pub const LUXFER_WARNING_AMBIGUOUS_PAINT: luxfer_warning_code = 30;
 /// difference in paint from this place that all but 5 % of the places with similar guides exceed, divided by the
 /// typical difference in paint between places with equal guides. The warning points to the place in the artwork.
 pub const LUXFER_WARNING_BLEMISH: luxfer_warning_code = 31;
-/// The sizes of the lamps in the photo contradict the perspective of the plane: the lamps hang or lie on several planes,
-/// the mask of the lights shows other things, or the camera is wrong. Where the photo shows the plane k times as large, it
-/// would show lamps on the plane k times as large, but shows these lamps k^severity times as large. Only luxfer_transfer
-/// compares them, because luxfer_rectify does not know the lamps.
+/// The sizes of the lamps in the photo contradict the perspective of the plane: the lamps hang or lie on several
+/// planes, the mask of the lights shows other things, or the camera is wrong. Where the photo shows the plane k times
+/// as large, it would show lamps on the plane k times as large, but shows these lamps k^severity times as large. Only
+/// luxfer_transfer compares them, because luxfer_rectify does not know the lamps.
 pub const LUXFER_WARNING_OFF_PLANE: luxfer_warning_code = 32;
 
 /// A warning: a reason to doubt a result.
