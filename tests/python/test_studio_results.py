@@ -40,7 +40,7 @@ class Results(StudioCase):
                 self.session.out("exr", self.folder).rename(self.folder / "early.exr")
 
         self.edit(seen)
-        self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program", "program-c"])
+        self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program", "program-c", "program-cpp"])
         self.assertEqual(luxfer.Image.load(context(), self.folder / "early.exr").size[:2], (160, 104))
         first = {kind: self.out(kind) for kind in KINDS}
         unlit = luxfer.Scene.from_bytes(context(), self.out("room"))

@@ -125,6 +125,7 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
   assert.equal((await download(page, "png")).subarray(1, 4).toString(), "PNG");
   assert.match(await download(page, "program", "utf8"), /strokes\.add\(phase/);
   assert.match(await download(page, "program-c", "utf8"), /luxfer_strokes_add\(/);
+  assert.match(await download(page, "program-cpp", "utf8"), /luxfer::Strokes::create\(/);
   const project = await download(page, "project", "utf8");
   assert.equal(JSON.parse(project).strokes.length, 3);
 
