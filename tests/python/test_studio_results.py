@@ -29,6 +29,17 @@ KINDS = [kind for kind in ENDINGS if kind != "room" and (kind != "usd" or HAS_US
 class Results(StudioCase):
     """Results as files, without a server."""
 
+    def test_the_light_to_compare_with_becomes_as_accurate_as_the_picture(self):
+        pictures = []
+        self.edit(lambda header: header["type"] == "picture" and pictures.append(header), compare="white", noise=0.5)
+        before, after = ([p for p in pictures if p["which"] == which] for which in ("before", "after"))
+        self.assertEqual([p["done"] for p in before], [False, True])  # a quick one first
+        self.assertEqual([(p["done"], p["width"], p["height"]) for p in (before[-1], after[-1])], 2 * [(True, 160, 104)])
+        self.assertLess(before[-1]["noise"], 1.5 * after[-1]["noise"])
+        pictures.clear()
+        self.edit(lambda header: header["type"] == "picture" and pictures.append(header), compare="own", noise=0.5)
+        self.assertEqual({p["which"] for p in pictures}, {"before"})  # the lit room has not changed
+
     def test_results_belong_to_the_project_that_is_shown(self):
         early = {}
 
