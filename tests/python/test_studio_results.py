@@ -12,11 +12,11 @@ import zipfile
 from types import SimpleNamespace
 from unittest import mock
 
-from support import Case, context, demo, luxfer, np
+from support import Case, context, demo, lit_room, luxfer, np
 from support_studio import StudioCase
 
 from luxfer.cli.plane import above_floor
-from luxfer.studio import painting, pictures, program, project, results
+from luxfer.studio import measure, painting, pictures, program, project, results
 from luxfer.studio.light import Light
 from luxfer.studio.room import work_plane
 from luxfer.studio.results import ENDINGS
@@ -126,6 +126,26 @@ class Results(StudioCase):
         self.assertNotIn("height", seen["lux"])
         self.edit(last, white=200.0, lux_plane={"surface": "no such", "height": 0.75}, until="lux")
         self.assertIn("Choose another plane", seen["lux"]["problem"])
+
+    def test_the_smallest_and_the_largest_illuminance_lie_in_their_intervals(self):
+        scene = lit_room()
+        plane = measure.chosen_plane(scene, "Ceiling", self.project)[0]
+
+        def lux(samples, seed):
+            job = luxfer.Illuminance(context(), scene).start_grid(
+                plane.grid(), columns=12, rows=8, samples=samples, seed=seed
+            )
+            return measure.numbers(job.wait())
+
+        sharp, inside = lux(4096, 99), 0
+        for seed in range(1, 21):
+            found = lux(64, seed)
+            for name in ("minimum", "maximum"):
+                low, high = found[f"{name}_range"]
+                self.assertLess(low, found[name])
+                self.assertLess(found[name], high)
+                inside += low <= sharp[name] <= high
+        self.assertGreaterEqual(inside, 38)  # 95 % of 40 intervals
 
     def test_an_added_lamp_is_in_the_room_and_in_its_schedule(self):
         seen = {}

@@ -102,6 +102,8 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
   assert.match(await page.locator("#room-status").innerText(), /stated error \d/);
   await page.locator("#lux dd").first().waitFor();
   assert.match(await page.locator("#lux").innerText(), /On a plane 0\.75 m above the floor, 0\.50 m from the walls\./);
+  for (const name of ["lowest", "highest", "uniformity"])
+    assert.match(await page.locator("#lux").innerText(), new RegExp(`${name}\\s+[\\d.]+( lx)? \\([\\d.]+ to [\\d.]+\\)`));
   await picture(page, "1-proposal");
 
   await paintAll(page);
