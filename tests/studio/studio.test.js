@@ -442,6 +442,29 @@ test("by touch, in windows of any size, light and dark", { skip }, async (t) => 
   assert.equal(await background(), "rgb(244, 244, 242)");
 });
 
+test("by pen: a stroke is wider if the pen is pressed", { skip }, async (t) => {
+  const { address } = await server();
+  const page = await open(t, await browse(t), address);
+  await page.locator("label:has(#tool-not-plane)").click();
+  const input = await page.context().newCDPSession(page);
+  for (const [force, y] of [
+    [0.1, 0.88],
+    [0.9, 0.96],
+  ]) {
+    const [x0, y0] = await place(page, 0.3, y);
+    const event = { button: "left", buttons: 1, clickCount: 1, pointerType: "pen", force };
+    await input.send("Input.dispatchMouseEvent", { ...event, type: "mousePressed", x: x0, y: y0 });
+    await input.send("Input.dispatchMouseEvent", { ...event, type: "mouseMoved", x: x0 + 60, y: y0 });
+    await input.send("Input.dispatchMouseEvent", { ...event, type: "mouseReleased", x: x0 + 60, y: y0 });
+  }
+  await page.waitForFunction(() => document.body.dataset.strokes === "2");
+  const [light, strong] = await page.evaluate(() => {
+    const mine = localStorage.getItem(`luxfer-studio/${sessionStorage.getItem("luxfer-studio-session")}`);
+    return JSON.parse(mine).project.strokes.map((stroke) => stroke.radius);
+  });
+  assert.ok(strong > 2 * light, `radii ${light} and ${strong}`);
+});
+
 test("two users at once", { skip }, async (t) => {
   const { address } = await server();
   const [one, two] = await Promise.all([
