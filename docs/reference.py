@@ -108,7 +108,8 @@ class Header:
             page = f"reference/c/{slug(title)}.md"
             names = [name for kind, name, _, _ in section["items"] if kind in ("function", "struct", "callback", "opaque")]
             out.append(f"## [{title}]({slug(title)}.md)\n")
-            out.append(", ".join(f"[`{name}`]({relative(page, 'reference/c/')}#{name})" for name in names) + "\n")
+            links = (f"[`{name}`]({relative(page, 'reference/c/')}#{name})" for name in names)
+            out.append((", ".join(links) or "Only constants.") + "\n")
         return "\n".join(out)
 
     def page(self, title: str) -> str:

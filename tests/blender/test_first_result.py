@@ -1,6 +1,6 @@
-"""The DCC artist's way to a first result, of docs/guide/first-results.md: from a photo and a scene as files to the scene
-in the light of the photo, by the operators that the buttons of the panel call. Runs in a Blender without a window
-(bpy)."""
+"""The DCC artist's way to a first result, of docs/guide/first-results.md: from a photo and a scene as files to the
+scene in the light of the photo, by the operators that the buttons of the panel call. Runs in a Blender without a
+window (bpy)."""
 
 import re
 import tempfile
