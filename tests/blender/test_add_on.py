@@ -355,7 +355,7 @@ class AddOn(unittest.TestCase):
             bpy.ops.luxfer.stylise()
             picture = convert.pixels(bpy.data.images[painting.PICTURE])[..., :3]
             if folder := os.environ.get("LUXFER_LOOK"):
-                name = f"parts_{settings.guide_parts}_{ball.luxfer_paint_as}.png".lower()
+                name = f"parts_{settings.guides_by}_{ball.luxfer_paint_as}.png".lower()
                 luxfer.Image(work.context(), picture, "srgb").save(os.path.join(folder, name))
             return picture
 
@@ -365,6 +365,11 @@ class AddOn(unittest.TestCase):
         self.assertLess(is_ball(picture[:, :24]).mean(), 0.2)  # the left wall
         ball.luxfer_paint_as = "TABLE"
         self.assertLess(is_ball(painted()[middle]).mean(), 0.3)
+        ball.luxfer_paint_as = "BALL"
+        settings.guides_by = "CYCLES"
+        picture = painted()
+        self.assertGreater(is_ball(picture[middle]).mean(), 0.8)
+        self.assertLess(is_ball(picture[:, :24]).mean(), 0.2)
 
     def test_cycles_can_be_cancelled_and_leaves_nothing(self):
         settings = self.scene.luxfer

@@ -30,7 +30,9 @@ const ends = [];
 const job = { after: (work) => ends.push(work) };
 try {
   const server = await serve(job, folder(), [], false);
-  const page = await open(job, await browse(job, { viewport: { width: 1440, height: 900 } }), server.address);
+  const browser = await browse(job, { viewport: { width: 1440, height: 900 } });
+  browser.setDefaultTimeout(600_000); // on a machine that does much else
+  const page = await open(job, browser, server.address);
   for (const [tool, ...places] of STROKES) {
     await changed(page, "rounds", await state(page, "rounds"), () => paint(page, tool, ...places));
   }
@@ -50,7 +52,7 @@ try {
       /^Done/.test(document.getElementById("room-status").textContent) &&
       document.body.dataset.noise <= 0.05 &&
       document.body.dataset.last === "idle";
-    await page.waitForFunction(isDone, null, { timeout: 600_000 });
+    await page.waitForFunction(isDone);
     await page.locator("#room-pane h2").click(); // nothing has the focus
     await page.mouse.move(5, 890);
     await page.screenshot({ path: readme, type: "jpeg", quality: 82 });

@@ -44,7 +44,7 @@ def stylise_steps(
     extras: str,
 ) -> Generator[work.Step, Any, None]:
     """Steps of a stylisation. The target is a scene, whose guides the library renders, or a running rendering of
-    guides by Cycles, which has no `extras`."""
+    guides by Cycles, which has no edges."""
     try:
         stylize = luxfer.Stylize(work.context(), artwork)
         source, job = ball(*artwork.size[:2], params["samples"])
@@ -52,6 +52,8 @@ def stylise_steps(
         if isinstance(target, passes.Rendering):
             yield target
             passes.add_light(stylize, passes.light_of(source), target.light())
+            if "materials" in extras:
+                passes.add_parts(stylize, source, target.parts)
         else:
             guides = luxfer.Guides(work.context(), target)
             yield guides.start(**params)
@@ -112,11 +114,11 @@ class LUXFER_OT_stylise(work.Background, bpy.types.Operator):
         if view is None:
             raise ValueError("the scene has no camera")
         artwork, params = convert.image(work.context(), settings.artwork), {"samples": settings.guide_samples}
+        found = parts.of(scene) if settings.guide_parts else None
         if settings.guides_by == "CYCLES":
-            target = passes.Rendering(scene, context.view_layer, settings.guide_samples)
+            target = passes.Rendering(scene, context.view_layer, settings.guide_samples, found)
         else:
-            change = parts.Renaming(parts.of(scene)) if settings.guide_parts else None
-            target = convert.scene(work.context(), scene, change)
+            target = convert.scene(work.context(), scene, None if found is None else parts.Renaming(found))
             params["width"], params["height"] = convert.resolution(scene)
             params["camera"] = target.add_camera(**view)
         names = {"materials": settings.guide_parts, "edges": settings.guide_edges}

@@ -130,8 +130,9 @@ class PaintingPanel(Sidebar):
         column.prop(settings, "guide_samples")
         layout.prop(settings, "match_light")
         column = layout.column(align=True)
-        column.enabled = settings.guides_by == "LUXFER"
-        column.prop(settings, "guide_edges")
+        row = column.row(align=True)
+        row.enabled = settings.guides_by == "LUXFER"
+        row.prop(settings, "guide_edges")
         column.prop(settings, "guide_parts")
         if settings.guide_parts and context.object is not None:
             column.prop(context.object, "luxfer_paint_as", text=context.object.name)
