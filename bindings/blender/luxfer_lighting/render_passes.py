@@ -34,7 +34,8 @@ import numpy as np
 
 #: The guides in luxfer's order: the name of each guide, and of its image in luxfer.Guides.
 GUIDES = {"full": "full", "direct": "direct", "specular": "specular", "indirect": "indirect", "two bounces": "two-bounces"}
-PASSES = ("combined", "diffuse_direct", "diffuse_indirect", "diffuse_color", "glossy_direct", "glossy_color", "normal", "material_index", "object_index")
+LIGHT_PASSES = ("combined", "diffuse_direct", "diffuse_indirect", "diffuse_color", "glossy_direct", "glossy_color")
+PASSES = (*LIGHT_PASSES, "normal", "material_index", "object_index")
 #: The names of passes before Blender 5.0.
 LONG = {
     "DiffDir": "Diffuse Direct",
