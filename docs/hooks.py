@@ -49,13 +49,24 @@ header = reference.Header()
 python = reference.python_pages()
 
 
+#: Maximum number of entries of the navigation: more are a list to search, not a guide.
+MAX_ENTRIES = 30
+
+
 def on_config(config):
-    c = [{title: f"reference/c/{reference.slug(title)}.md"} for title in header.sections]
-    config.nav += [{"C reference": c}, {"Python reference": [{title: path} for path, (title, _) in python.items()]}]
+    config.nav += [{"C reference": "reference/c/index.md"}, {"Python reference": "reference/python/index.md"}]
+    if (count := entries(config.nav)) > MAX_ENTRIES:
+        raise PluginError(f"the navigation has {count} entries, more than {MAX_ENTRIES}: let a page lead to another")
     return config
 
 
+def entries(nav) -> int:
+    """Returns the number of pages in a part of the navigation."""
+    return sum(entries(value) if isinstance(value, list) else 1 for entry in nav for value in entry.values())
+
+
 def on_files(files, config):
+    files.append(File.generated(config, "reference/c/index.md", content=header.index()))
     for title in header.sections:
         path = f"reference/c/{reference.slug(title)}.md"
         files.append(File.generated(config, path, content=header.page(title)))

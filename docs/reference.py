@@ -101,6 +101,17 @@ class Header:
 
     # -- pages
 
+    def index(self) -> str:
+        """Returns the page that lists all items, by section and kind."""
+        out = ["# C reference\n", "All functions, structs and callbacks of `luxfer.h`, by section. A section also has its constants.\n"]
+        for title, section in self.sections.items():
+            page = f"reference/c/{slug(title)}.md"
+            names = [name for kind, name, _, _ in section["items"] if kind in ("function", "struct", "callback", "opaque")]
+            out.append(f"## [{title}]({slug(title)}.md)\n")
+            links = (f"[`{name}`]({relative(page, 'reference/c/')}#{name})" for name in names)
+            out.append((", ".join(links) or "Only constants.") + "\n")
+        return "\n".join(out)
+
     def page(self, title: str) -> str:
         section, path = self.sections[title], f"reference/c/{slug(title)}.md"
         out = [f"# {title}\n", self.outline(section["prose"], path)]
@@ -172,6 +183,9 @@ def python_pages() -> dict[str, tuple[str, str]]:
     if missing := names - described:
         raise Undocumented(f"no page describes these names of luxfer.__all__: {missing}")
     out["reference/python/design.md"] = ("design", design_page())
+    title, overview = out["reference/python/index.md"]
+    listed = "".join(f"- [luxfer.{name}]({path.rpartition('/')[2]})\n" for path, (name, _) in out.items() if name != title)
+    out["reference/python/index.md"] = (title, f"{overview}\n## Modules\n\n{listed}")
     return out
 
 

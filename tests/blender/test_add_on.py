@@ -1,6 +1,9 @@
 """Tests the add-on in a Blender without a window (bpy from PyPI): its operators on a test scene, with results by
 Cycles."""
 
+import contextlib
+import io
+import logging
 import os
 import time
 import unittest
@@ -11,7 +14,7 @@ from room import SIZE, bpy, build, cycles, np, unbiased
 import bmesh
 import luxfer
 import luxfer_lighting
-from luxfer_lighting import convert, lighting, live, painting, panels, passes, work
+from luxfer_lighting import convert, lighting, live, painting, panels, parts, passes, work
 
 EXEMPLAR = {"width": 240, "height": 160, "samples": 8}
 
@@ -322,6 +325,51 @@ class AddOn(unittest.TestCase):
         for name, value in before.items():
             self.assertEqual(getattr(self.scene.render, name), value)
         self.assertEqual(self.scene.view_layers[0].use_pass_diffuse_direct, asked)
+
+    def test_the_exporter_is_quiet(self):
+        text = io.StringIO()
+        with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
+            convert.scene(work.context(), self.scene)
+        self.assertNotIn("INFO", text.getvalue())
+        self.assertEqual(logging.root.manager.disable, 0)
+
+    def test_objects_are_painted_like_the_ball_and_walls_like_the_table(self):
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=0.6, location=(3, 2.5, 1.2))
+        ball = bpy.context.object
+        ball.data.materials.append(bpy.data.materials["White"])  # which the walls have too
+        found = parts.of(self.scene)
+        self.assertEqual(found.pop(ball.name), parts.BALL)
+        self.assertEqual(set(found.values()), {parts.TABLE})
+        self.hang_lamp()
+        settings = self.scene.luxfer
+        settings.exemplar_width, settings.exemplar_height, settings.guide_samples = 96, 72, 8
+        bpy.ops.luxfer.sample_artwork(style="paint")
+        artwork = convert.pixels(settings.artwork)[..., :3]
+        of_ball, of_table = artwork[30:42, 40:56].mean((0, 1)), artwork[:12].mean((0, 1))
+
+        def is_ball(pixels):
+            """Whether pixels are nearer to the colour of the ball than to the colour of the table."""
+            return np.abs(pixels - of_ball).sum(-1) < np.abs(pixels - of_table).sum(-1)
+
+        def painted():
+            bpy.ops.luxfer.stylise()
+            picture = convert.pixels(bpy.data.images[painting.PICTURE])[..., :3]
+            if folder := os.environ.get("LUXFER_LOOK"):
+                name = f"parts_{settings.guides_by}_{ball.luxfer_paint_as}.png".lower()
+                luxfer.Image(work.context(), picture, "srgb").save(os.path.join(folder, name))
+            return picture
+
+        picture = painted()
+        middle = np.s_[34:44, 43:53]
+        self.assertGreater(is_ball(picture[middle]).mean(), 0.8)
+        self.assertLess(is_ball(picture[:, :24]).mean(), 0.2)  # the left wall
+        ball.luxfer_paint_as = "TABLE"
+        self.assertLess(is_ball(painted()[middle]).mean(), 0.3)
+        ball.luxfer_paint_as = "BALL"
+        settings.guides_by = "CYCLES"
+        picture = painted()
+        self.assertGreater(is_ball(picture[middle]).mean(), 0.8)
+        self.assertLess(is_ball(picture[:, :24]).mean(), 0.2)
 
     def test_cycles_can_be_cancelled_and_leaves_nothing(self):
         settings = self.scene.luxfer

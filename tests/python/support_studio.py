@@ -40,7 +40,7 @@ class StudioCase(Case):
             patch.start()
             self.addCleanup(patch.stop)
 
-    def edit(self, seen=lambda header: None, draft=False, until="idle", **changes):
+    def edit(self, seen=lambda header: None, draft=False, until="idle", compare="off", **changes):
         """Sends a state of the project, and waits for a message: the last one comes when the work is done."""
         ended, failures = threading.Event(), []
 
@@ -53,7 +53,7 @@ class StudioCase(Case):
 
         self.session.listeners[:] = [listen]
         whole = {**self.project, **changes}
-        self.session.edit({"project": whole, "size": [160, 104], "draft": draft})
+        self.session.edit({"project": whole, "size": [160, 104], "draft": draft, "compare": compare})
         if not draft:
             self.assertTrue(ended.wait(120))
             self.assertEqual(failures, [])

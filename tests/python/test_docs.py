@@ -48,6 +48,20 @@ class Documentation(Case):
         self.assertEqual(self.run_blocks(PACKAGE.parent.parent / "README.md", smaller), 1)
         self.assertEqual(luxfer.Image.load(context(), self.folder / "lit.png").size[:2], (64, 36))
 
+    def test_the_first_screen_of_the_readme_shows_the_studio(self):
+        """The pictures of the README exist, are wide enough to read and small enough to load."""
+        root = PACKAGE.parent.parent
+        text = (root / "README.md").read_text()
+        pictures = re.findall(r"!\[[^]]+\]\(([^)]+)\)", text)
+        self.assertEqual(pictures[0], "docs/studio.jpg")
+        self.assertLess(text.partition(pictures[0])[0].count("\n"), 10)
+        for name in pictures:
+            data = (root / name).read_bytes()
+            self.assertLess(len(data), 400_000, name)
+            width, height, _ = luxfer.Image.from_bytes(context(), data).size
+            self.assertGreaterEqual(width, 1200, name)
+            self.assertGreater(height, 400, name)
+
     def run_blocks(self, page, instead=()):
         """Runs the Python blocks of a page in the test's folder, with words replaced by `instead`; returns their
         number."""

@@ -1,5 +1,5 @@
 """The programs that the studio writes: run without the studio, they give its room, schedule and picture to the bit.
-Runs where benches/peers/install.sh has installed `studio`; the C program needs a compiler."""
+Runs where benches/peers/install.sh has installed `studio`; the programs in C and C++ need compilers."""
 
 import csv
 import io
@@ -15,11 +15,12 @@ from support_studio import StudioCase, inner_grid
 
 from luxfer import _abi
 from luxfer._library import library
-from luxfer.studio import program_c, project
+from luxfer.studio import program_c, program_cpp, project
 
 ROOT = Path(__file__).resolve().parents[2]
 CC, CXX = shutil.which("cc"), shutil.which("c++")
 STRICT = ["-ffp-contract=off", "-Wall", "-Wextra", "-Werror", "-I", str(ROOT / "include")]
+STRICT_CXX = ["-std=c++17", "-pedantic", "-Wconversion", "-Wno-float-conversion", "-Wshadow", *STRICT, "-I", str(ROOT / "bindings" / "cpp")]
 
 
 class Programs(StudioCase):
@@ -43,6 +44,9 @@ class Programs(StudioCase):
         subprocess.run([CC, "-std=c11", "-pedantic", *STRICT, source, *options], check=True, timeout=120)
         if CXX:
             subprocess.run([CXX, "-x", "c++", "-std=c++17", "-fsyntax-only", *STRICT, source], check=True, timeout=120)
+
+    def compile_cpp(self, source, *options):
+        subprocess.run([CXX, *STRICT_CXX, source, *options], check=True, timeout=120)
 
     def check(self, place, studio):
         """Compares what a program has written with the files of the studio."""
@@ -93,21 +97,28 @@ class Programs(StudioCase):
             compiled = self.folder / "program"
             self.compile(self.session.out("program-c", self.folder), library._name, "-lm", "-o", compiled)
             self.check(self.run_in("c", [compiled]), studio)
+        with self.subTest("C++"):
+            if CXX is None:
+                self.skipTest("there is no C++ compiler")
+            compiled = self.folder / "program_cpp"
+            self.compile_cpp(self.session.out("program-cpp", self.folder), library._name, "-o", compiled)
+            self.check(self.run_in("cpp", [compiled]), studio)
 
-    @unittest.skipUnless(CC, "there is no C compiler")
+    @unittest.skipUnless(CC and CXX, "there is no compiler")
     def test_a_program_has_only_the_parts_that_it_needs(self):
         camera = {"position": (0, 1, 2), "target": (0, 1, 0), "fov_y": 1.0}
         names = "B\u00fcro.png", "it's \"here\"??/.png", "back\\slash.png"
         for name, changes in zip(names, ({}, {"removed": [[1.0, 2.0]]}, {"mix": {"1": 0.5}})):
             named = {"name": name, "sha256": "0" * 64}
             whole = project.checked({"luxfer_studio": 1, "photo": named, "room": named, **changes})
-            text = program_c.program(whole, (72, 48), name, camera, 0.01)
-            self.assertEqual("take_out" in text, "removed" in changes)
-            self.assertEqual("mix_lamps" in text, "mix" in changes)
-            self.assertNotIn("/* [", text)
-            source = self.folder / "small.c"
-            source.write_text(text, encoding="utf-8")
-            self.compile(source, "-fsyntax-only")
+            for language, compile, mark in ((program_c, self.compile, "/* ["), (program_cpp, self.compile_cpp, "// [")):
+                text = language.program(whole, (72, 48), name, camera, 0.01)
+                self.assertEqual("take_out" in text, "removed" in changes)
+                self.assertEqual("mix_lamps" in text, "mix" in changes)
+                self.assertNotIn(mark, text)
+                source = self.folder / f"small{language.SOURCE.suffix}"
+                source.write_text(text, encoding="utf-8")
+                compile(source, "-fsyntax-only")
 
 
 if __name__ == "__main__":

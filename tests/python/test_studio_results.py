@@ -12,11 +12,11 @@ import zipfile
 from types import SimpleNamespace
 from unittest import mock
 
-from support import Case, context, demo, luxfer, np
+from support import Case, context, demo, lit_room, luxfer, np
 from support_studio import StudioCase
 
 from luxfer.cli.plane import above_floor
-from luxfer.studio import painting, pictures, program, project, results
+from luxfer.studio import measure, painting, pictures, program, project, results
 from luxfer.studio.light import Light
 from luxfer.studio.room import work_plane
 from luxfer.studio.results import ENDINGS
@@ -29,6 +29,17 @@ KINDS = [kind for kind in ENDINGS if kind != "room" and (kind != "usd" or HAS_US
 class Results(StudioCase):
     """Results as files, without a server."""
 
+    def test_the_light_to_compare_with_becomes_as_accurate_as_the_picture(self):
+        pictures = []
+        self.edit(lambda header: header["type"] == "picture" and pictures.append(header), compare="white", noise=0.5)
+        before, after = ([p for p in pictures if p["which"] == which] for which in ("before", "after"))
+        self.assertEqual([p["done"] for p in before], [False, True])  # a quick one first
+        self.assertEqual([(p["done"], p["width"], p["height"]) for p in (before[-1], after[-1])], 2 * [(True, 160, 104)])
+        self.assertLess(before[-1]["noise"], 1.5 * after[-1]["noise"])
+        pictures.clear()
+        self.edit(lambda header: header["type"] == "picture" and pictures.append(header), compare="own", noise=0.5)
+        self.assertEqual({p["which"] for p in pictures}, {"before"})  # the lit room has not changed
+
     def test_results_belong_to_the_project_that_is_shown(self):
         early = {}
 
@@ -40,7 +51,7 @@ class Results(StudioCase):
                 self.session.out("exr", self.folder).rename(self.folder / "early.exr")
 
         self.edit(seen)
-        self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program", "program-c"])
+        self.assertEqual([kind for kind, content in early.items() if content is None], ["exr", "png", "program", "program-c", "program-cpp"])
         self.assertEqual(luxfer.Image.load(context(), self.folder / "early.exr").size[:2], (160, 104))
         first = {kind: self.out(kind) for kind in KINDS}
         unlit = luxfer.Scene.from_bytes(context(), self.out("room"))
@@ -115,6 +126,26 @@ class Results(StudioCase):
         self.assertNotIn("height", seen["lux"])
         self.edit(last, white=200.0, lux_plane={"surface": "no such", "height": 0.75}, until="lux")
         self.assertIn("Choose another plane", seen["lux"]["problem"])
+
+    def test_the_smallest_and_the_largest_illuminance_lie_in_their_intervals(self):
+        scene = lit_room()
+        plane = measure.chosen_plane(scene, "Ceiling", self.project)[0]
+
+        def lux(samples, seed):
+            job = luxfer.Illuminance(context(), scene).start_grid(
+                plane.grid(), columns=12, rows=8, samples=samples, seed=seed
+            )
+            return measure.numbers(job.wait())
+
+        sharp, inside = lux(4096, 99), 0
+        for seed in range(1, 21):
+            found = lux(64, seed)
+            for name in ("minimum", "maximum"):
+                low, high = found[f"{name}_range"]
+                self.assertLess(low, found[name])
+                self.assertLess(found[name], high)
+                inside += low <= sharp[name] <= high
+        self.assertGreaterEqual(inside, 38)  # 95 % of 40 intervals
 
     def test_an_added_lamp_is_in_the_room_and_in_its_schedule(self):
         seen = {}

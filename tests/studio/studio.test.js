@@ -102,6 +102,8 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
   assert.match(await page.locator("#room-status").innerText(), /stated error \d/);
   await page.locator("#lux dd").first().waitFor();
   assert.match(await page.locator("#lux").innerText(), /On a plane 0\.75 m above the floor, 0\.50 m from the walls\./);
+  for (const name of ["lowest", "highest", "uniformity"])
+    assert.match(await page.locator("#lux").innerText(), new RegExp(`${name}\\s+[\\d.]+( lx)? \\([\\d.]+ to [\\d.]+\\)`));
   await picture(page, "1-proposal");
 
   await paintAll(page);
@@ -125,6 +127,7 @@ test("from photo and strokes to files, and back from the project", { skip }, asy
   assert.equal((await download(page, "png")).subarray(1, 4).toString(), "PNG");
   assert.match(await download(page, "program", "utf8"), /strokes\.add\(phase/);
   assert.match(await download(page, "program-c", "utf8"), /luxfer_strokes_add\(/);
+  assert.match(await download(page, "program-cpp", "utf8"), /luxfer::Strokes::create\(/);
   const project = await download(page, "project", "utf8");
   assert.equal(JSON.parse(project).strokes.length, 3);
 
@@ -437,6 +440,29 @@ test("by touch, in windows of any size, light and dark", { skip }, async (t) => 
   await page.reload();
   await page.waitForFunction(() => document.body.dataset.texture);
   assert.equal(await background(), "rgb(244, 244, 242)");
+});
+
+test("by pen: a stroke is wider if the pen is pressed", { skip }, async (t) => {
+  const { address } = await server();
+  const page = await open(t, await browse(t), address);
+  await page.locator("label:has(#tool-not-plane)").click();
+  const input = await page.context().newCDPSession(page);
+  for (const [force, y] of [
+    [0.1, 0.88],
+    [0.9, 0.96],
+  ]) {
+    const [x0, y0] = await place(page, 0.3, y);
+    const event = { button: "left", buttons: 1, clickCount: 1, pointerType: "pen", force };
+    await input.send("Input.dispatchMouseEvent", { ...event, type: "mousePressed", x: x0, y: y0 });
+    await input.send("Input.dispatchMouseEvent", { ...event, type: "mouseMoved", x: x0 + 60, y: y0 });
+    await input.send("Input.dispatchMouseEvent", { ...event, type: "mouseReleased", x: x0 + 60, y: y0 });
+  }
+  await page.waitForFunction(() => document.body.dataset.strokes === "2");
+  const [light, strong] = await page.evaluate(() => {
+    const mine = localStorage.getItem(`luxfer-studio/${sessionStorage.getItem("luxfer-studio-session")}`);
+    return JSON.parse(mine).project.strokes.map((stroke) => stroke.radius);
+  });
+  assert.ok(strong > 2 * light, `radii ${light} and ${strong}`);
 });
 
 test("two users at once", { skip }, async (t) => {

@@ -5,9 +5,9 @@ sidebar.
     ball ─▶ artwork painted over it ─▶ stylise ─▶ an image
 
 Files: `convert` converts Blender's data to luxfer's and back, `work` runs jobs in the background, `lighting` and
-`painting` have the operators, `live` shows masks while strokes are painted, `passes` renders guides in a second
-Blender (`render_passes`), `panels` draws the panels, `settings` has the data that the .blend stores. One unit of
-radiance in Blender is one cd/m², so the numbers in materials are nits.
+`painting` have the operators, `live` shows masks while strokes are painted, `parts` decides which objects are painted
+like the ball, `passes` renders guides in a second Blender (`render_passes`), `panels` draws the panels, `settings` has
+the data that the .blend stores. One unit of radiance in Blender is one cd/m², so the numbers in materials are nits.
 """
 
 from . import lighting, live, painting, panels, settings, work

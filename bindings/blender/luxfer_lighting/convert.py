@@ -5,11 +5,14 @@ Blender has Z up and rows from the bottom; luxfer has Y up and rows from the top
 
 from __future__ import annotations
 
+import contextlib
 import json
+import logging
 import math
 import os
 import struct
 import tempfile
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import bpy
@@ -67,25 +70,29 @@ def store(name: str, values: np.ndarray, linear: bool, pack: bool = True) -> bpy
     return out
 
 
-def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
-    """Converts the current scene with modifiers applied, through a temporary glTF file. Adds area lights and the
-    world's colour, which glTF cannot store. One unit of strength becomes one cd/m²."""
+def scene(
+    context: luxfer.Context, source: bpy.types.Scene, change: Callable[[dict[str, Any]], None] | None = None
+) -> luxfer.Scene:
+    """Converts the current scene with modifiers applied, through a temporary glTF file, whose JSON document `change`
+    may edit. Adds area lights and the world's colour, which glTF cannot store. One unit of strength becomes one
+    cd/m²."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "scene.glb")
-        bpy.ops.export_scene.gltf(
-            filepath=path,
-            export_format="GLB",
-            export_apply=True,
-            export_yup=True,
-            export_cameras=True,
-            export_lights=True,
-            export_import_convert_lighting_mode="COMPAT",
-            export_animations=False,
-            use_active_scene=True,
-            use_renderable=True,
-        )
+        with without_log():
+            bpy.ops.export_scene.gltf(
+                filepath=path,
+                export_format="GLB",
+                export_apply=True,
+                export_yup=True,
+                export_cameras=True,
+                export_lights=True,
+                export_import_convert_lighting_mode="COMPAT",
+                export_animations=False,
+                use_active_scene=True,
+                use_renderable=True,
+            )
         with open(path, "rb") as file:
-            out = luxfer.Scene.from_bytes(context, with_specular_levels(file.read()))
+            out = luxfer.Scene.from_bytes(context, edited(file.read(), specular_levels, change))
     for thing in source.objects:
         if thing.type == "LIGHT" and thing.data.type == "AREA" and not thing.hide_render:
             add_area_light(out, thing)
@@ -97,11 +104,33 @@ def scene(context: luxfer.Context, source: bpy.types.Scene) -> luxfer.Scene:
     return out
 
 
-def with_specular_levels(glb: bytes) -> bytes:
-    """Replaces the specular factors (KHR_materials_specular) in a GLB file, which luxfer does not support, by the
-    index of refraction with equal reflectance at normal incidence."""
+@contextlib.contextmanager
+def without_log() -> Iterator[None]:
+    """Keeps the exporter from writing a line for every object into the terminal. Its warnings and errors remain."""
+    before = logging.root.manager.disable
+    logging.disable(max(before, logging.INFO))
+    try:
+        yield
+    finally:
+        logging.disable(before)
+
+
+def edited(glb: bytes, *changes: Callable[[dict[str, Any]], None] | None) -> bytes:
+    """Returns a GLB file after changes of its JSON document."""
     length, _ = struct.unpack_from("<II", glb, 12)
     document = json.loads(glb[20 : 20 + length])
+    for change in filter(None, changes):
+        change(document)
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    rest = glb[20 + length :]
+    head = struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A)
+    return head + text + rest
+
+
+def specular_levels(document: dict[str, Any]) -> None:
+    """Replaces the specular factors (KHR_materials_specular), which luxfer does not support, by the index of
+    refraction with equal reflectance at normal incidence."""
     for material in document.get("materials", ()):
         extensions = material.get("extensions", {})
         factor = extensions.get("KHR_materials_specular", {}).get("specularFactor")
@@ -113,11 +142,6 @@ def with_specular_levels(glb: bytes) -> bytes:
     used = document.setdefault("extensionsUsed", [])
     if "KHR_materials_ior" not in used:
         used.append("KHR_materials_ior")
-    text = json.dumps(document).encode()
-    text += b" " * (-len(text) % 4)
-    rest = glb[20 + length :]
-    head = struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(rest), len(text), 0x4E4F534A)
-    return head + text + rest
 
 
 def place_light(context: luxfer.Context, out: luxfer.Scene, thing: bpy.types.Object) -> None:

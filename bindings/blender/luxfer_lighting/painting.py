@@ -9,7 +9,7 @@ import bpy
 import luxfer
 import numpy as np
 
-from . import convert, passes, work
+from . import convert, parts, passes, work
 
 EXEMPLAR, ARTWORK, PICTURE = "Luxfer exemplar", "Luxfer artwork", "Luxfer stylised"
 
@@ -36,10 +36,15 @@ def sample_steps(width: int, height: int, samples: int, style: str) -> Generator
 
 
 def stylise_steps(
-    artwork: luxfer.Image, target: luxfer.Scene | passes.Rendering, params: dict[str, Any], preset: str
+    artwork: luxfer.Image,
+    target: luxfer.Scene | passes.Rendering,
+    params: dict[str, Any],
+    preset: str,
+    match_light: float,
+    extras: str,
 ) -> Generator[work.Step, Any, None]:
     """Steps of a stylisation. The target is a scene, whose guides the library renders, or a running rendering of
-    guides by Cycles."""
+    guides by Cycles, which has no edges."""
     try:
         stylize = luxfer.Stylize(work.context(), artwork)
         source, job = ball(*artwork.size[:2], params["samples"])
@@ -47,14 +52,16 @@ def stylise_steps(
         if isinstance(target, passes.Rendering):
             yield target
             passes.add_light(stylize, passes.light_of(source), target.light())
+            if "materials" in extras:
+                passes.add_parts(stylize, source, target.parts)
         else:
             guides = luxfer.Guides(work.context(), target)
             yield guides.start(**params)
-            stylize.add_guides(source, guides)
+            stylize.add_guides(source, guides, extras or 0)
     finally:  # if the work ends before the rendering was used
         if isinstance(target, passes.Rendering):
             target.close()
-    yield stylize.start(preset)
+    yield stylize.start(preset, match_appearance=match_light)
     painted = stylize.image().numpy(np.uint8, "srgb")
     convert.store(PICTURE, painted[..., :3] / np.float32(255), linear=False)
 
@@ -107,13 +114,16 @@ class LUXFER_OT_stylise(work.Background, bpy.types.Operator):
         if view is None:
             raise ValueError("the scene has no camera")
         artwork, params = convert.image(work.context(), settings.artwork), {"samples": settings.guide_samples}
+        found = parts.of(scene) if settings.guide_parts else None
         if settings.guides_by == "CYCLES":
-            target = passes.Rendering(scene, context.view_layer, settings.guide_samples)
+            target = passes.Rendering(scene, context.view_layer, settings.guide_samples, found)
         else:
-            target = convert.scene(work.context(), scene)
+            target = convert.scene(work.context(), scene, None if found is None else parts.Renaming(found))
             params["width"], params["height"] = convert.resolution(scene)
             params["camera"] = target.add_camera(**view)
-        return stylise_steps(artwork, target, params, settings.preset), 3
+        names = {"materials": settings.guide_parts, "edges": settings.guide_edges}
+        extras = "|".join(name for name, is_wanted in names.items() if is_wanted)
+        return stylise_steps(artwork, target, params, settings.preset, settings.match_light, extras), 3
 
 
 CLASSES = (LUXFER_OT_exemplar, LUXFER_OT_sample_artwork, LUXFER_OT_stylise)

@@ -128,6 +128,14 @@ class PaintingPanel(Sidebar):
         column.label(text="Guides by")
         column.row(align=True).prop(settings, "guides_by", expand=True)
         column.prop(settings, "guide_samples")
+        layout.prop(settings, "match_light")
+        column = layout.column(align=True)
+        row = column.row(align=True)
+        row.enabled = settings.guides_by == "LUXFER"
+        row.prop(settings, "guide_edges")
+        column.prop(settings, "guide_parts")
+        if settings.guide_parts and context.object is not None:
+            column.prop(context.object, "luxfer_paint_as", text=context.object.name)
         layout.operator("luxfer.stylise", icon="BRUSH_DATA")
         draw_text(layout, context, f"The picture is the image {painting.PICTURE}")
         show_progress(layout, context)

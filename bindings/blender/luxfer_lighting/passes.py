@@ -19,21 +19,28 @@ import bpy
 import luxfer
 import numpy as np
 
+from .parts import BALL, TABLE
 from .render_passes import GUIDES
 
 PROGRAM = Path(__file__).with_name("render_passes.py")
+#: The number of each part of the exemplar in the rendered image of parts.
+NUMBERS = {BALL: 1, TABLE: 2}
 
 
 class Rendering:
     """A running rendering of guides for a scene's active camera. Only the constructor accesses Blender's data, and it
-    only reads."""
+    only reads. After `light`, `parts` is an image of the NUMBERS of the parts of the exemplar."""
 
-    def __init__(self, scene: bpy.types.Scene, layer: bpy.types.ViewLayer, samples: int):
+    def __init__(
+        self, scene: bpy.types.Scene, layer: bpy.types.ViewLayer, samples: int, parts: dict[str, str] | None = None
+    ):
+        numbers = {name: NUMBERS[part] for name, part in (parts or {}).items()}
         self._folder = tempfile.TemporaryDirectory(prefix="luxfer-")
         self._out = Path(self._folder.name) / "guides.npz"
         blend = os.path.join(self._folder.name, "scene.blend")
         bpy.ops.wm.save_as_mainfile(filepath=blend, copy=True, check_existing=False, compress=False)
-        settings = {"blend": blend, "scene": scene.name, "layer": layer.name, "samples": samples, "out": str(self._out)}
+        settings = {"blend": blend, "scene": scene.name, "layer": layer.name, "samples": samples}
+        settings.update(parts=numbers, out=str(self._out))
         blender = [bpy.app.binary_path, "--background", "--python-exit-code", "1", "--python"]
         if not bpy.app.binary_path:  # bpy runs as a Python module
             blender = [sys.executable, "-P"]  # -P keeps Python from importing the files beside the program
@@ -94,6 +101,7 @@ class Rendering:
         """The guides by the names of GUIDES, (height, width, 3), rows from the top."""
         with np.load(self._out) as stored:
             out = {name: stored[name] for name in GUIDES}
+            self.parts = stored["parts"]
         self.close()
         return out
 
@@ -123,3 +131,15 @@ def add_light(stylize: luxfer.Stylize, source: dict[str, np.ndarray], target: di
     exposure = np.float32(0.8 / bright if bright > 0 else 1)
     for name in GUIDES:
         stylize.add_guide(name, *(np.minimum(light[name] * exposure, 1) for light in (source, target)))
+
+
+def add_parts(stylize: luxfer.Stylize, source: luxfer.Guides, parts: np.ndarray) -> None:
+    """Adds the guide of materials for an image of the NUMBERS of parts. Most of the exemplar shows the table, and the
+    rest of it the ball."""
+    codes = source.image("materials").numpy()
+    colours, counts = np.unique(codes.reshape(-1, 3), axis=0, return_counts=True)
+    table, ball = colours[np.argsort(-counts)][:2]
+    wanted = np.zeros((*parts.shape, 3), np.float32)
+    for part, colour in ((BALL, ball), (TABLE, table)):
+        wanted[np.round(parts) == NUMBERS[part]] = colour
+    stylize.add_guide("materials", codes, wanted, 1.0, "data")

@@ -3,7 +3,8 @@
     blender --background --python render_passes.py -- SETTINGS
     python render_passes.py -- SETTINGS                             with a Python that has bpy
 
-SETTINGS is JSON: "blend", "scene", "layer" (a view layer), "samples", "out" (an .npz file). Before each rendering, the
+SETTINGS is JSON: "blend", "scene", "layer" (a view layer), "samples", "parts" (a number for each name of an object; the
+file has the image "parts" of these numbers, 0 elsewhere), "out" (an .npz file). Before each rendering, the
 program prints a line "part FIRST LAST": the range of the whole work's progress that the rendering covers. Cycles
 prints its own progress. The passes as light path expressions, in the notation of luxfer's guides:
 
@@ -33,7 +34,8 @@ import numpy as np
 
 #: The guides in luxfer's order: the name of each guide, and of its image in luxfer.Guides.
 GUIDES = {"full": "full", "direct": "direct", "specular": "specular", "indirect": "indirect", "two bounces": "two-bounces"}
-PASSES = ("combined", "diffuse_direct", "diffuse_indirect", "diffuse_color", "glossy_direct", "glossy_color", "normal", "material_index")
+LIGHT_PASSES = ("combined", "diffuse_direct", "diffuse_indirect", "diffuse_color", "glossy_direct", "glossy_color")
+PASSES = (*LIGHT_PASSES, "normal", "material_index", "object_index")
 #: The names of passes before Blender 5.0.
 LONG = {
     "DiffDir": "Diffuse Direct",
@@ -42,6 +44,7 @@ LONG = {
     "GlossDir": "Glossy Direct",
     "GlossCol": "Glossy Color",
     "IndexMA": "Material Index",
+    "IndexOB": "Object Index",
 }
 
 
@@ -149,7 +152,7 @@ def print_progress(text: Any, *_: Any) -> None:
         print(text, flush=True)
 
 
-def set_up(scene: bpy.types.Scene, layer: str, samples: int) -> None:
+def set_up(scene: bpy.types.Scene, layer: str, samples: int, parts: dict[str, int]) -> None:
     """Sets up a scene: one view layer with the passes, no compositing, no denoising, the whole picture."""
     scene.render.engine = "CYCLES"
     scene.cycles.samples = samples
@@ -162,6 +165,8 @@ def set_up(scene: bpy.types.Scene, layer: str, samples: int) -> None:
         setattr(scene.view_layers[layer], f"use_pass_{name}", True)
     for number, material in enumerate(bpy.data.materials):
         material.pass_index = number + 1
+    for thing in scene.objects:
+        thing.pass_index = parts.get(thing.name, 0)
     settings = scene.render.image_settings
     for name, value in (
         ("media_type", "MULTI_LAYER_IMAGE"),  # exists from Blender 5.0 on
@@ -183,9 +188,9 @@ def render(scene: bpy.types.Scene, first: float, last: float) -> dict[str, np.nd
         return read_exr(Path(scene.render.filepath))
 
 
-def guides(scene: bpy.types.Scene, layer: str, samples: int) -> dict[str, np.ndarray]:
-    """Renders the guides: arrays (height, width, 3) in Blender's units of radiance."""
-    set_up(scene, layer, samples)
+def guides(scene: bpy.types.Scene, layer: str, samples: int, parts: dict[str, int]) -> dict[str, np.ndarray]:
+    """Renders the guides: arrays (height, width, 3) in Blender's units of radiance; and the image "parts"."""
+    set_up(scene, layer, samples, parts)
     bpy.app.handlers.render_stats.append(print_progress)
     found = render(scene, 0.0, 0.6)
     light = {
@@ -199,7 +204,8 @@ def guides(scene: bpy.types.Scene, layer: str, samples: int) -> dict[str, np.nda
     short = render(scene, 0.6, 0.9)
     light["two bounces"] = (short["Diffuse Direct"] + short["Diffuse Indirect"]) * short["Diffuse Color"]
     smoothed = smooth(list(light.values()), found["Normal"], found["Material Index"][0])
-    return {name: np.moveaxis(values, 0, 2) for name, values in zip(light, smoothed)}
+    out = {name: np.moveaxis(values, 0, 2) for name, values in zip(light, smoothed)}
+    return {**out, "parts": found["Object Index"][0]}
 
 
 def main() -> None:
@@ -208,7 +214,8 @@ def main() -> None:
 
     addon_utils.enable("cycles")  # the user may have disabled it
     bpy.ops.wm.open_mainfile(filepath=settings["blend"], load_ui=False)
-    np.savez(settings["out"], **guides(bpy.data.scenes[settings["scene"]], settings["layer"], settings["samples"]))
+    scene = bpy.data.scenes[settings["scene"]]
+    np.savez(settings["out"], **guides(scene, settings["layer"], settings["samples"], settings["parts"]))
 
 
 if __name__ == "__main__":

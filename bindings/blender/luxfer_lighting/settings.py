@@ -93,6 +93,22 @@ class LuxferSettings(bpy.types.PropertyGroup):
         description="Renderer of the guides, which show the light in the scene",
     )
     guide_samples: IntProperty(name="Samples", default=32, min=1, max=65536, description="Paths per pixel of the guides")
+    match_light: FloatProperty(
+        name="Match Light",
+        default=1,
+        min=0,
+        max=1,
+        subtype="FACTOR",
+        description="Maps the bright and dark places of the scene to the bright and dark places of the ball: 0 leaves "
+        "the light as it is",
+    )
+    guide_parts: BoolProperty(
+        name="Objects Like the Ball",
+        default=True,
+        description="Paints objects like the ball, and what surrounds them, such as walls and floors, like the table; "
+        "otherwise light alone decides",
+    )
+    guide_edges: BoolProperty(name="Edges", default=True, description="Keeps edges of shapes finer than the strokes")
     exemplar_width: IntProperty(name="Width", default=480, min=32, max=8192, description="Width of the exemplar in pixels")
     exemplar_height: IntProperty(name="Height", default=360, min=32, max=8192, description="Height of the exemplar in pixels")
 
@@ -100,8 +116,18 @@ class LuxferSettings(bpy.types.PropertyGroup):
 def register() -> None:
     bpy.utils.register_class(LuxferSettings)
     bpy.types.Scene.luxfer = PointerProperty(type=LuxferSettings)
+    bpy.types.Object.luxfer_paint_as = EnumProperty(
+        name="Paint",
+        items=(
+            ("AUTOMATIC", "Automatic", "Objects as large as walls and floors like the table, all others like the ball"),
+            ("BALL", "Like the Ball", "With the paint of the ball"),
+            ("TABLE", "Like the Table", "With the paint of the table"),
+        ),
+        description="Part of the artwork whose paint this object gets",
+    )
 
 
 def unregister() -> None:
+    del bpy.types.Object.luxfer_paint_as
     del bpy.types.Scene.luxfer
     bpy.utils.unregister_class(LuxferSettings)

@@ -103,11 +103,13 @@ export class LuxPanel {
       return;
     }
     const { minimum, mean, maximum, error } = message as unknown as Record<string, number>;
+    const [lowest, highest] = [message.minimum_range as Range, message.maximum_range as Range];
+    const uniformity: Range = [lowest[0] / (mean + error), lowest[1] / Math.max(mean - error, lowest[1])];
     const numbers: [string, string][] = [
       ["mean", `${short(mean)} lx ± ${short(error)}`],
-      ["lowest", `${short(minimum)} lx`],
-      ["highest", `${short(maximum)} lx`],
-      ["uniformity", mean > 0 ? short(minimum / mean) : "–"],
+      ["lowest", `${short(minimum)} lx ${between(lowest)}`],
+      ["highest", `${short(maximum)} lx ${between(highest)}`],
+      ["uniformity", mean > 0 ? `${short(minimum / mean)} ${between(uniformity)}` : "–"],
     ];
     this.result.replaceChildren(
       plan(message.values as number[][], message.size as [number, number], maximum),
@@ -121,6 +123,12 @@ export class LuxPanel {
   }
 }
 
+type Range = [number, number];
+
+function between([low, high]: Range): string {
+  return `(${short(low)} to ${short(high)})`;
+}
+
 /** Describes the place of the plane, and the points that do not count. */
 function words(message: Message): string {
   const inside = message.inside as number;
@@ -129,7 +137,7 @@ function words(message: Message): string {
     : `On a plane ${short(message.height as number)} m above the floor, ` +
       `${distances(message.insets as number[])} from the walls.`;
   const left = inside === 1 ? " 1 point lies" : ` ${inside} points lie`;
-  return `${where} ± is 95 %.${inside ? `${left} inside of furniture or in the dark, which does not count.` : ""}`;
+  return `${where} ± and brackets are 95 % intervals.${inside ? `${left} inside of furniture or in the dark, which does not count.` : ""}`;
 }
 
 /** The distances of the plane from the walls along both of its sides. */

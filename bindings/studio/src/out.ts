@@ -14,7 +14,8 @@ const KINDS: [string, string, string][] = [
   ["room", "Unlit room (GLB)", "as the programs read it, also if it was opened as USD"],
   ["project", "Project (JSON)", "opens here again with the same result"],
   ["program", "Program (Python)", "gives the same results without the studio"],
-  ["program-c", "Program (C)", "such a program in C, which is C++ too"],
+  ["program-cpp", "Program (C++)", "such a program in C++17"],
+  ["program-c", "Program (C)", "such a program in C11"],
 ];
 
 export function showOut(session: string, openProject: () => void): void {

@@ -28,6 +28,7 @@ const STAGES: Record<string, string> = {
   relight: "solving for the strength",
   render: "rendering",
   plan: "planning",
+  compare: "rendering the light to compare with",
 };
 
 /** Stages of the other tab; the last one ends its work. */

@@ -27,6 +27,7 @@ It needs `pip install luxfer[studio]`. The page is TypeScript in bindings/studio
 | results | writes the files of results |
 | program | converts a project to a Python program |
 | program_c | converts a project to a C program, by program.c |
+| program_cpp | converts a project to a C++ program, by program.cpp |
 """
 
 from __future__ import annotations

@@ -45,6 +45,7 @@ AFTER = {
     "second": "mix",
     "plan": "first",
     "picture": "first",
+    "compared": "mix",
 }
 #: Maximum distance of a point from the lamp that it selects, as a share of the photo's width.
 MAX_LAMP_DISTANCE = 0.015
@@ -98,6 +99,9 @@ class Light:
             project["plan"] = self.planned
         self.done["plan"] = project
         self.step("picture", project["plan"], lambda: self.refine(project, size))
+        if compare != "off":
+            inputs = [compare, *shot, project["plan"]]
+            self.step("compared", inputs, lambda: self.refine_before(project, size, compare))
 
     def step(self, name: str, inputs: Any, work: Callable[[], None]) -> None:
         """Runs a step if it is outdated."""
@@ -283,12 +287,25 @@ class Light:
         self.render = render
         self.send_picture(render, project, "after", False, time.perf_counter() - start)
 
+    def room_before(self, project: Project, compare: str) -> luxfer.Scene:
+        """Returns the room with the light that the page compares with."""
+        if compare != "white":
+            return self.room
+        placed = self.room.find_surface(project["surface"] or self.surface)
+        return mix.apply(self.transfer, placed, project["mix"], project["added"], "white")
+
     def first_before(self, project: Project, size: tuple[int, int], compare: str) -> None:
-        scene = self.room
-        if compare == "white":
-            placed = self.room.find_surface(project["surface"] or self.surface)
-            scene = mix.apply(self.transfer, placed, project["mix"], project["added"], "white")
-        self.quick(scene, project, size, "before")
+        self.quick(self.room_before(project, compare), project, size, "before")
+
+    def refine_before(self, project: Project, size: tuple[int, int], compare: str) -> None:
+        """Renders the picture to compare with like the picture of the lit room, after that one has ended."""
+        settings = {**project["plan"]["render"], "width": size[0], "height": size[1], "preview": 1.0}
+        render = luxfer.Render(self.context, self.room_before(project, compare))
+        render.set_camera(**self.camera(project))
+        start = time.perf_counter()
+        self.send("working", stage="compare")
+        self.thread.finish(render.start(**settings))
+        self.send_picture(render, project, "before", True, time.perf_counter() - start)
 
     def quick(self, scene: luxfer.Scene, project: Project, size: tuple[int, int], which: str) -> luxfer.Render:
         """Renders and sends a small picture within a fixed time."""

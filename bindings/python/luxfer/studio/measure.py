@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from statistics import NormalDist
 from typing import Any
 
 import luxfer
@@ -45,12 +46,21 @@ def points(plane: Plane) -> tuple[int, int]:
     return columns, rows
 
 
+def ranges(values: Any, errors: Any) -> dict[str, list[float]]:
+    """Returns 95 % intervals of the smallest and of the largest of many values with standard errors. The noise of all
+    values moves both, so all values lie within the bounds together with this probability (Šidák's correction)."""
+    width = NormalDist().inv_cdf((1 + 0.95 ** (1 / len(values))) / 2) * errors
+    low, high = np.maximum(values - width, 0), values + width
+    pairs = {"minimum_range": (low.min(), high.min()), "maximum_range": (low.max(), high.max())}
+    return {name: [float(bound) for bound in pair] for name, pair in pairs.items()}
+
+
 def numbers(result: luxfer.Illuminance) -> dict[str, Any]:
     """Returns values and statistics of a calculation. No light at all reaches points inside of furniture, which
     therefore do not count."""
     report = result.report
     values = result.image("lux").numpy()[..., 0]
-    lit = values[values > 0]
+    lit, errors = values[values > 0], result.image("error").numpy()[..., 0][values > 0]
     scale = values.size / max(1, lit.size)
     return {
         "values": [[round(float(v), 1) for v in row] for row in values],
@@ -59,6 +69,7 @@ def numbers(result: luxfer.Illuminance) -> dict[str, Any]:
         "mean": report.mean * scale,
         "maximum": report.maximum,
         "error": 1.96 * report.mean_error * scale,
+        **(ranges(lit, errors) if lit.size else {"minimum_range": [0.0, 0.0], "maximum_range": [0.0, 0.0]}),
     }
 
 

@@ -154,6 +154,30 @@ def settings_of(project: Project) -> str:
     return assignments("params", texture) + assignments("pattern", pattern) + assignments("relight", RELIGHT)
 
 
+def filled(source: Path, project: Project, by_grid: PhotoCamera | None, data: str) -> str:
+    """Returns the text of a source in C or C++ with the values of a project, and without the parts that the project
+    does not need."""
+    is_plain = mix.is_plain(project["mix"], project["added"])
+    is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain, "grid": bool(by_grid)}
+    is_needed["regions"] = is_needed["removed"] or is_needed["mix"]
+    is_needed["pixels"] = is_needed["regions"] or is_needed["grid"]
+    is_needed["read"] = is_needed["regions"]
+    text = source.read_text(encoding="utf-8")
+    for name, is_kept in is_needed.items():
+        part = rf"{mark(f'start {name}')}(.*?){mark(f'end {name}')}"
+        text = re.sub(part, r"\1" if is_kept else "", text, flags=re.DOTALL)
+    render = (project["plan"] or {"render": {"target_error": project["noise"]}})["render"]
+    values = {"data": data, "settings": settings_of(project), "render": assignments("params", render)}
+    for name, lines in values.items():
+        text = re.sub(mark(name), lambda _, lines=lines: lines, text)  # type: ignore[misc]
+    return text
+
+
+def mark(name: str) -> str:
+    """Returns the expression of a line that consists of a mark in a comment."""
+    return rf" *(?:/\*|//) \[{name}\](?: \*/)?\n"
+
+
 def program(
     project: Project,
     size: tuple[int, int],
@@ -163,20 +187,4 @@ def program(
     by_grid: PhotoCamera | None = None,
 ) -> str:
     """Returns the text of the program, from the arguments of program.program."""
-    is_plain = mix.is_plain(project["mix"], project["added"])
-    is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain, "grid": bool(by_grid)}
-    is_needed["regions"] = is_needed["removed"] or is_needed["mix"]
-    is_needed["pixels"] = is_needed["regions"] or is_needed["grid"]
-    is_needed["read"] = is_needed["regions"]
-    text = SOURCE.read_text(encoding="utf-8")
-    for name, is_kept in is_needed.items():
-        part = rf" */\* \[start {name}\] \*/\n(.*?) */\* \[end {name}\] \*/\n"
-        text = re.sub(part, r"\1" if is_kept else "", text, flags=re.DOTALL)
-    render = (project["plan"] or {"render": {"target_error": project["noise"]}})["render"]
-    for mark, body in (
-        ("/* [data] */\n", data_of(project, size, surface, camera, exposure, by_grid)),
-        ("    /* [settings] */\n", settings_of(project)),
-        ("    /* [render] */\n", assignments("params", render)),
-    ):
-        text = text.replace(mark, body)
-    return text
+    return filled(SOURCE, project, by_grid, data_of(project, size, surface, camera, exposure, by_grid))

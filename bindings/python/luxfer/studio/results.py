@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import luxfer
 
 from ..design.luminaires import Product
-from . import mix, program, program_c
+from . import mix, program, program_c, program_cpp
 from . import project as projects
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ ENDINGS = {
     "project": "luxfer.json",
     "program": "py",
     "program-c": "c",
+    "program-cpp": "cpp",
 }
 #: The step of Light after which each file can be written: pictures need full size, the programs need exposure and plan.
 NEEDS = {
@@ -43,6 +44,7 @@ NEEDS = {
     "png": "second",
     "program": "plan",
     "program-c": "plan",
+    "program-cpp": "plan",
 }
 
 
@@ -69,6 +71,7 @@ def write(kind: str, path: Path, wanted: Wanted, light: Light) -> None:
         "project": lambda path, wanted, light: _text(path, projects.dumps(wanted.project)),
         "program": lambda path, wanted, light: _program(path, wanted, light, program.program),
         "program-c": lambda path, wanted, light: _program(path, wanted, light, program_c.program),
+        "program-cpp": lambda path, wanted, light: _program(path, wanted, light, program_cpp.program),
     }
     writers[kind](path, wanted, light)
 
