@@ -2,6 +2,7 @@
 
 use super::{Image, try_vec};
 use crate::error::Result;
+use glam::{DMat2, DVec2};
 
 /// The 8-connected regions of lit pixels: pixels with a colour channel above 0.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,6 +12,22 @@ pub struct Regions {
     pub labels: Vec<u32>,
     pub count: usize,
 }
+
+/// Place and extent of a region.
+#[derive(Clone, Copy, Debug)]
+pub struct Moments {
+    /// Number of pixels.
+    pub area: f64,
+    /// Mean of the pixel centres.
+    pub centre: DVec2,
+    /// Covariance of the positions within the region, each pixel being a square.
+    pub covariance: DMat2,
+    /// Whether the region touches the border of the image, which may cut it.
+    pub is_cut: bool,
+}
+
+/// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention: exact]
+const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 
 /// Number of pixels that are tested for light at once.
 const BLOCK: usize = 64;
@@ -48,6 +65,30 @@ impl Regions {
             }
         }
         Ok(Self { labels, count: count as usize })
+    }
+
+    /// Returns the moments of each region; `size` is the size of the image.
+    pub fn moments(&self, [width, height]: [usize; 2]) -> Result<Vec<Moments>> {
+        let none = Moments { area: 0.0, centre: DVec2::ZERO, covariance: DMat2::ZERO, is_cut: false };
+        let mut all = try_vec(self.count, none)?;
+        let lit = || self.labels.iter().enumerate().filter(|(_, label)| **label > 0);
+        let place = |i: usize| DVec2::new((i % width) as f64 + 0.5, (i / width) as f64 + 0.5);
+        for (i, &label) in lit() {
+            let region = &mut all[label as usize - 1];
+            let (x, y) = (i % width, i / width);
+            region.area += 1.0;
+            region.centre += place(i);
+            region.is_cut |= x == 0 || y == 0 || x + 1 == width || y + 1 == height;
+        }
+        all.iter_mut().for_each(|region| region.centre /= region.area);
+        for (i, &label) in lit() {
+            let region = &mut all[label as usize - 1];
+            let off = place(i) - region.centre;
+            region.covariance += DMat2::from_cols(off * off.x, off * off.y);
+        }
+        let pixel = DMat2::from_diagonal(DVec2::splat(PIXEL_VARIANCE));
+        all.iter_mut().for_each(|region| region.covariance = region.covariance * region.area.recip() + pixel);
+        Ok(all)
     }
 }
 
@@ -89,5 +130,19 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn moments_are_those_of_the_filled_shape() {
+        // A rectangle of 6 × 2 pixels, and a pixel in a corner.
+        let image = Image::from_fn(12, 8, |x, y| [f32::from((2..8).contains(&x) && (3..5).contains(&y) || x + y == 0)]);
+        let regions = Regions::of(&image.unwrap()).unwrap();
+        let [corner, rectangle] = regions.moments([12, 8]).unwrap()[..] else { panic!() };
+        assert!(corner.is_cut && !rectangle.is_cut);
+        assert_eq!((corner.area, corner.centre), (1.0, DVec2::splat(0.5)));
+        assert_eq!((rectangle.area, rectangle.centre), (12.0, DVec2::new(5.0, 4.0)));
+        // The variance of a uniform position on a side of length a is a² / 12.
+        let exact = DMat2::from_diagonal(DVec2::new(36.0, 4.0) / 12.0);
+        assert!(rectangle.covariance.abs_diff_eq(exact, 1e-12), "{:?}", rectangle.covariance);
     }
 }

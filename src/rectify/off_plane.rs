@@ -4,10 +4,9 @@ use super::Unwarped;
 use super::shapes::BLOOM_UNIT;
 use crate::geometry::PhotoMap;
 use crate::image::Image;
-use crate::image::regions::Regions;
+use crate::image::regions::{Moments, Regions};
 use crate::maths;
 use crate::warning::{Code, Warning};
-use glam::DVec2;
 use std::f64::consts::PI;
 
 /// Number of lamps below which their sizes tell nothing about the plane. [convention]
@@ -23,15 +22,6 @@ const SIGNIFICANT: f64 = 3.0;
 /// units of [`BLOOM_UNIT`]: up to the standard deviation of the width. [bench photos:tune]
 const BLOOMS: [f64; 4] = [0.0, 0.5, 1.0, 1.5];
 
-/// A lamp in the photo.
-#[derive(Clone, Copy, Debug, Default)]
-struct Lamp {
-    area: f64,
-    centre: DVec2,
-    /// Whether the border of the photo cuts the lamp.
-    is_cut: bool,
-}
-
 /// How the areas of lamps in the photo grow with the scale of the plane at their places, which is the area in the photo
 /// of a small part of the plane. The areas are proportional to a power of the scale. If the lamps are alike and lie on
 /// the plane, the exponent is 1; if their sizes have nothing to do with the plane, it is 0.
@@ -45,8 +35,7 @@ struct Growth {
 /// Warns if the sizes of the lamps in the photo do not follow the perspective of the plane. `lights` is the mask of the
 /// lights in the photo. `None` if they follow it, or if there are too few lamps to tell.
 pub fn off_plane(lights: &Image, unwarped: &Unwarped) -> Option<Warning> {
-    let regions = Regions::of(lights).ok()?;
-    let lamps = lamps(&regions, [lights.width, lights.height]);
+    let lamps = Regions::of(lights).and_then(|regions| regions.moments([lights.width, lights.height])).ok()?;
     let unit = BLOOM_UNIT * lights.width.max(lights.height) as f64;
     let growths = BLOOMS.map(|bloom| Growth::of(&lamps, &unwarped.to_photo, bloom * unit));
     let is_below = |growth: &Growth| growth.exponent + SIGNIFICANT * growth.error < 1.0;
@@ -65,24 +54,10 @@ pub fn off_plane(lights: &Image, unwarped: &Unwarped) -> Option<Warning> {
     Warning::below(Code::OffPlane, exponent, MIN_EXPONENT, message, advice)
 }
 
-/// Measures the regions of a mask.
-fn lamps(regions: &Regions, [width, height]: [usize; 2]) -> Vec<Lamp> {
-    let mut lamps = vec![Lamp::default(); regions.count];
-    for (i, label) in regions.labels.iter().enumerate() {
-        let Some(lamp) = (*label as usize).checked_sub(1).and_then(|k| lamps.get_mut(k)) else { continue };
-        let (x, y) = (i % width, i / width);
-        lamp.area += 1.0;
-        lamp.centre += DVec2::new(x as f64, y as f64) + 0.5;
-        lamp.is_cut |= x == 0 || y == 0 || x + 1 == width || y + 1 == height;
-    }
-    lamps.iter_mut().for_each(|lamp| lamp.centre /= lamp.area);
-    lamps
-}
-
 impl Growth {
     /// The growth of lamps that the border of the photo does not cut, after bloom of this width in pixels is removed
     /// from them. `None` if too few lamps remain.
-    fn of(lamps: &[Lamp], to_photo: &PhotoMap, bloom: f64) -> Option<Self> {
+    fn of(lamps: &[Moments], to_photo: &PhotoMap, bloom: f64) -> Option<Self> {
         let to_plane = to_photo.homography.inverse();
         let points = lamps.iter().filter(|lamp| lamp.area >= MIN_AREA && !lamp.is_cut).map(|lamp| {
             // A homography with the third homogeneous coordinate w multiplies areas by a constant over |w|³.

@@ -1,12 +1,12 @@
 //! Measures how similar the lamp shapes on a plane are to each other in fronto-parallel view, for a given tilt of the
 //! plane.
 
+use crate::error::Result;
 use crate::geometry::robust::weighted_median;
 use crate::geometry::{Perspective, Radial};
 use crate::image::Image;
-use crate::image::regions::Regions;
+use crate::image::regions::{Moments, Regions};
 use crate::maths;
-use crate::{error::Result, image::try_vec};
 use glam::{DMat2, DVec2, DVec3};
 
 /// Standard deviation, in photo pixels, of the position of a region's border, caused by blur and bloom.
@@ -27,8 +27,6 @@ const STRETCH_COST: f64 = 6.0;
 /// Limit of the ratio of a shape's squared deviation to the variance of the deviation. Beyond this limit, the cost of
 /// the shape grows more slowly, because the shape is probably of another kind. [convention]
 const OUTLIER: f64 = 4.0;
-/// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention]
-const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 
 /// `BLOOMS`: widths of bloom (the bright margin around overexposed lamps) that are tried, in units of [`BLOOM_UNIT`].
 /// `BLOOM_SPREAD`: prior standard deviation of the width, in the same unit. Bloom lengthens the semi-axes of all
@@ -116,38 +114,14 @@ impl Shape {
 /// Finds the largest regions of a mask, at most [`MAX_SHAPES`]. Regions that touch the border of the photo or have
 /// fewer than [`MIN_PIXELS`] pixels are left out.
 pub fn of_mask(mask: &Image, camera: &Perspective) -> Result<Vec<Shape>> {
-    #[derive(Clone, Copy, Default)]
-    struct RegionMoments {
-        count: f64,
-        first: DVec2,
-        second: [f64; 3],
-        is_cut: bool,
-    }
     let (width, height) = (mask.width, mask.height);
-    let regions = Regions::of(mask)?;
-    let mut sums = try_vec(regions.count, RegionMoments::default())?;
-    for (pixel, &label) in regions.labels.iter().enumerate().filter(|(_, label)| **label > 0) {
-        let sum = &mut sums[label as usize - 1];
-        let at = mask.centre_of(pixel) - camera.principal;
-        sum.count += 1.0;
-        sum.first += at;
-        sum.second = [sum.second[0] + at.x * at.x, sum.second[1] + at.x * at.y, sum.second[2] + at.y * at.y];
-        let (x, y) = (pixel % width, pixel / width);
-        sum.is_cut |= x == 0 || y == 0 || x + 1 == width || y + 1 == height;
-    }
-    let bloom_unit = BLOOM_UNIT * width.max(height) as f64;
-    let mut whole: Vec<RegionMoments> = sums.into_iter().filter(|sum| !sum.is_cut && sum.count >= MIN_PIXELS).collect();
-    whole.sort_by(|a, b| b.count.total_cmp(&a.count));
+    let mut whole = Regions::of(mask)?.moments([width, height])?;
+    whole.retain(|region| !region.is_cut && region.area >= MIN_PIXELS);
+    whole.sort_by(|a, b| b.area.total_cmp(&a.area));
     whole.truncate(MAX_SHAPES);
+    let bloom_unit = BLOOM_UNIT * width.max(height) as f64;
     let lens = Radial { centre: DVec2::ZERO, bend: camera.bend };
-    let shape = |sum: &RegionMoments| {
-        let mean = sum.first / sum.count;
-        let [xx, xy, yy] = sum.second.map(|s| s / sum.count);
-        let cross = xy - mean.x * mean.y;
-        let (x, y) = (xx - mean.x * mean.x + PIXEL_VARIANCE, yy - mean.y * mean.y + PIXEL_VARIANCE);
-        let covariance = DMat2::from_cols(DVec2::new(x, cross), DVec2::new(cross, y));
-        Shape::new(mean, covariance, &lens, bloom_unit)
-    };
+    let shape = |region: &Moments| Shape::new(region.centre - camera.principal, region.covariance, &lens, bloom_unit);
     Ok(whole.iter().map(shape).collect())
 }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geometry::Homography;
+use glam::DVec2;
 
 const WIDTH: usize = 1600;
 const HEIGHT: usize = 1200;
