@@ -183,10 +183,13 @@ def limits(stage: str, path: str) -> str:
 
 
 def constant(stage: str, name: str, path: str) -> str:
-    """Returns the value of a constant of a stage's warnings, from the source."""
-    found = re.search(rf"const {name}: \w+ = ([\d.]+);", (ROOT / "src" / stage / "warnings.rs").read_text())
+    """Returns the value of a constant of a stage's warnings, from the source: of src/STAGE/warnings.rs, or of
+    src/STAGE.rs."""
+    source = ROOT / "src" / stage / "warnings.rs"
+    source = source if source.exists() else ROOT / "src" / f"{stage}.rs"
+    found = re.search(rf"const {name}: \w+ = ([\d.]+);", source.read_text())
     if not found:
-        raise PluginError(f"{path}: src/{stage}/warnings.rs has no limit {name}")
+        raise PluginError(f"{path}: {source.relative_to(ROOT)} has no limit {name}")
     return f"{float(found[1]):g}"
 
 
