@@ -1,4 +1,7 @@
 //! Warns if the lamps do not lie on the unwarped plane, as their sizes in the photo tell.
+//!
+//! Not modelled: lamps of several kinds. If all large lamps are far away and all small lamps near, the warning is
+//! raised although the lamps may lie on the plane.
 
 use super::Unwarped;
 use super::shapes::BLOOM_UNIT;
