@@ -194,7 +194,8 @@ class AddOn(unittest.TestCase):
         self.assertEqual(labels[0], panels.STAGES["PLANE"])
         shown = " ".join(labels[1:])
         self.assertEqual(shown, "A third of the mask is new. Paint there, at 30, 12 from the photo's top left.")
-        self.assertEqual(set(panels.STAGES), set(luxfer.types.Stage.__members__))
+        # A transfer has no stage STYLIZE.
+        self.assertEqual({*panels.STAGES, "STYLIZE"}, set(luxfer.types.Stage.__members__))
 
     def test_masks(self):
         self.load_photo()
@@ -229,7 +230,8 @@ class AddOn(unittest.TestCase):
         self.assertTrue(bpy.app.timers.is_registered(live.step))
         self.follow()  # the photo
         self.follow()  # the strokes
-        self.assertEqual(list(live.preview.shown), ["plane"])
+        self.assertEqual(list(live.preview.shown), ["plane", "lights"], "lights are proposed")
+        self.assertIn("A guess", live.preview.hint)
         self.assertIn("yellow", live.preview.hint)
         self.assertEqual(live.preview.overlay().shape, complete.shape)
 
@@ -247,7 +249,8 @@ class AddOn(unittest.TestCase):
 
         bpy.ops.luxfer.new_strokes()
         self.follow()
-        self.assertEqual(live.preview.shown, {})
+        self.assertEqual(list(live.preview.shown), ["plane", "lights"], "both are proposed")
+        self.assertIn("A guess", live.preview.hint)
         self.assertIn("green", live.preview.hint)
         manager.luxfer_live = False
         self.assertIsNone(live.step())

@@ -23,7 +23,7 @@ SHARE = 0.1
 #: Number of pixels above which photos are reduced.
 PIXELS = 1_500_000
 
-#: For each stage, the message that is shown if its strokes are missing.
+#: For each stage, the message that is shown if its strokes are missing. The mask is then missing too, or a guess.
 HINTS = {
     "plane": "Paint a stroke on the plane of the lights (green) and one off it (red)",
     "lights": "Paint a stroke on a light (yellow)",
@@ -77,15 +77,18 @@ class Preview:
         self.stage, self.job = stage, self.transfer.start(first, stage)
 
     def read(self, job: luxfer.Job[luxfer.Transfer]) -> None:
-        """Reads the mask of a stage, if it has strokes; then starts the next stage or shows the masks."""
+        """Reads the mask of a stage, if there is one; then starts the next stage or shows the masks."""
+        has_failed = False
         try:
             job.wait()
         except luxfer.errors.Degenerate as error:
-            self.hint = HINTS.get(self.stage, str(error))
+            self.hint, has_failed = HINTS.get(self.stage, str(error)), True
         if self.stage == "view":
             return
-        if not self.hint:
+        if not has_failed:
             self.masks[self.stage] = self.transfer.image(f"{self.stage}-mask").numpy()
+            if not self.hint and self.is_guess():
+                self.hint = f"A guess. {HINTS[self.stage]}"
             if self.stage == "plane":
                 self.begin("lights")
                 return
@@ -93,6 +96,11 @@ class Preview:
         self.shown = dict(self.masks)
         self.version += 1
         work.redraw(pictures=True)
+
+    def is_guess(self) -> bool:
+        """Whether the library has proposed the mask of the current stage, because its strokes are missing."""
+        found = ((warning.code.name, warning.stage.name.lower()) for warning in self.transfer.warnings)
+        return ("PROPOSED", self.stage) in found
 
     def overlay(self) -> np.ndarray | None:
         """The masks as colours to lay over the photo: (height, width, 4), rows from the top."""
