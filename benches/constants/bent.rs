@@ -84,7 +84,8 @@ pub fn bent() {
     figure("constants.bent.covered", 100.0 * all_covered as f64 / all as f64, "%");
 }
 
-/// The seeds of the photos; with the argument `--calibrate`, those of the photos by which the constants were chosen.
+/// Returns the seeds of the printed photos. With the argument `--calibrate`, returns the seeds of other photos, by
+/// which the constants were chosen.
 fn seeds() -> std::ops::Range<u64> {
     let first = if std::env::args().any(|a| a == "--calibrate") { CHOSEN_BY } else { 0 };
     first..first + PHOTOS

@@ -48,12 +48,13 @@ pub fn off_plane(lights: &Image, unwarped: &Unwarped) -> Option<Warning> {
     let exponent = growths.iter().flatten().map(|growth| growth.exponent).fold(f64::NEG_INFINITY, f64::max);
     let message = || {
         format!(
-            "the sizes of the lamps contradict the plane: where the photo shows the plane k times as large, it shows the \
-             lamps k^{exponent:.2} times as large"
+            "the sizes of the lamps contradict the plane: where the photo shows the plane k times as large, it shows \
+             the lamps k^{exponent:.2} times as large"
         )
     };
-    let advice = "do not use the texture unless it looks like the photo: if the lamps hang or lie on several planes, the \
-                  photo has no pattern to copy; otherwise the mask of the lights shows other things, or the camera is wrong";
+    let advice = "do not use the texture unless it looks like the photo: if the lamps hang or lie on several planes, \
+                  the photo has no pattern to copy; otherwise the mask of the lights shows other things, or the camera \
+                  is wrong";
     Warning::below(Code::OffPlane, exponent, MIN_EXPONENT, message, advice)
 }
 

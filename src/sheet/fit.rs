@@ -9,6 +9,7 @@ use super::select::{self, FittedMap};
 use crate::error::{Error, Result};
 use crate::geometry::Homography;
 use crate::geometry::linear::solve;
+use crate::geometry::robust::median;
 use crate::image::Image;
 use crate::job::Job;
 use crate::maths;
@@ -159,18 +160,12 @@ fn discard(model: &PageMap, points: &mut Vec<(Which, Sighting)>, fewest: usize) 
         model = model.fit(&all).0;
         let Some(distances) = model.left_out(&all) else { return };
         // Unlike the mean, the median does not grow with the outliers.
-        let limit = (OUTLIER * median(&distances) / MEDIAN).max(MIN_OUTLIER);
+        let limit = (OUTLIER * median(distances.clone()) / MEDIAN).max(MIN_OUTLIER);
         match distances.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) {
             Some((farthest, distance)) if *distance > limit => points.remove(farthest),
             _ => return,
         };
     }
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted[sorted.len() / 2]
 }
 
 fn sightings(points: &[(Which, Sighting)]) -> Vec<Sighting> {

@@ -208,7 +208,7 @@ struct Equations {
 }
 
 impl Equations {
-    /// `rows` are those of a problem with `count` values.
+    /// Adds up the normal equations from the `rows` of a [`Problem`]; `count` is the number of its values.
     fn new(rows: &[f64], count: usize) -> Option<Self> {
         let mut products = vec![0.0; (count + 1) * (count + 1)];
         for row in rows.chunks_exact(count + 1) {

@@ -66,8 +66,8 @@ pub fn choose(flat: &PageMap, points: &[Sighting], places: &[DVec2], job: Job) -
     Ok(distinct(chosen, points, places))
 }
 
-/// Keeps the best map of each degree and number of coefficients of the lens among those that the points determine, and
-/// sorts them, the best one first.
+/// Sorts the maps, the best one first. Leaves out maps that the points do not determine. Of several maps of equal
+/// degree and equal number of lens coefficients, keeps the best.
 fn distinct(mut all: Vec<FittedMap>, points: &[Sighting], places: &[DVec2]) -> Vec<FittedMap> {
     all.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
     let key = |f: &FittedMap| (f.model.terms.degree, f.model.terms.lens);

@@ -7,6 +7,7 @@ use super::regions::{self, Brightness, Regions};
 use super::surroundings::{self, Bounds, Surroundings};
 use super::tree::{Disjoint, Tree};
 use crate::error::Result;
+use crate::geometry::robust::median;
 use crate::image::{Image, try_collect, try_push, try_vec};
 use crate::job::Job;
 use crate::maths;
@@ -562,9 +563,4 @@ impl Search<'_> {
         let lightness = if lightness < 1.0 { 1.0 - 10.0 * (1.0 - lightness) } else { lightness };
         contour.min(lightness).min(CHROMA / chroma.max(1e-3)).max(0.0)
     }
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
