@@ -15,7 +15,7 @@ from support_studio import StudioCase, inner_grid
 
 from luxfer import _abi
 from luxfer._library import library
-from luxfer.studio import program_c, program_cpp, project
+from luxfer.studio import program, program_c, program_cpp, project
 
 ROOT = Path(__file__).resolve().parents[2]
 CC, CXX = shutil.which("cc"), shutil.which("c++")
@@ -112,7 +112,7 @@ class Programs(StudioCase):
             named = {"name": name, "sha256": "0" * 64}
             whole = project.checked({"luxfer_studio": 1, "photo": named, "room": named, **changes})
             for language, compile, mark in ((program_c, self.compile, "/* ["), (program_cpp, self.compile_cpp, "// [")):
-                text = language.program(whole, (72, 48), name, camera, 0.01)
+                text = language.program(whole, program.Chosen((72, 48), name, camera, 0.01))
                 self.assertEqual("take_out" in text, "removed" in changes)
                 self.assertEqual("mix_lamps" in text, "mix" in changes)
                 self.assertNotIn(mark, text)

@@ -262,7 +262,7 @@ class Programs(Case):
         named = {"name": "photo.png", "sha256": "0" * 64}
         whole = project.checked({"luxfer_studio": 1, "photo": named, **changes})
         camera = {"position": (0, 1, 2), "target": (0, 1, 0), "fov_y": 1.0}
-        return program.program(whole, (72, 48), changes.get("surface") or "Ceiling", camera, 0.01)
+        return program.program(whole, program.Chosen((72, 48), changes.get("surface") or "Ceiling", camera, 0.01))
 
     def test_names_are_those_of_the_files(self):
         for name in ("😀.png", "Büro.png", "it's \"here\".png", "back\\slash.png", "a\nb.png", "{brace}.png"):

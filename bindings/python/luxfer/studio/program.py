@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 from . import mix
 from .light import MAX_LAMP_DISTANCE, RELIGHT
@@ -86,16 +86,22 @@ render.image("preview").save("render.png", {exposure})
 PhotoCamera = tuple[list[list[float]], float]
 
 
-def program(
-    project: Project,
-    size: tuple[int, int],
-    surface: str,
-    camera: dict[str, Any],
-    exposure: float,
-    by_grid: PhotoCamera | None = None,
-) -> str:
-    """Returns the text of the program. Surface, camera and exposure are the values chosen by the studio, for a project
-    that does not state them; `by_grid` is the camera of the photo by the dragged grid, if it was dragged."""
+class Chosen(NamedTuple):
+    """What the studio has chosen for a project that does not state it."""
+
+    #: Width and height of the picture.
+    size: tuple[int, int]
+    #: Name of the surface that gets the lamps.
+    surface: str
+    camera: dict[str, Any]
+    exposure: float
+    #: The camera of the photo by the dragged grid, if it was dragged.
+    by_grid: PhotoCamera | None = None
+
+
+def program(project: Project, chosen: Chosen) -> str:
+    """Returns the text of the program."""
+    size, surface, camera, exposure, by_grid = chosen
     strokes = []
     for stroke in project["strokes"]:
         phase, positive = PHASES[stroke["kind"]]

@@ -15,7 +15,7 @@ import numpy as np
 from . import grid, mix
 from .light import MAX_LAMP_DISTANCE, RELIGHT
 from .live import PHASES
-from .program import PhotoCamera
+from .program import Chosen, PhotoCamera
 from .project import Project
 from .room import texture_settings
 
@@ -76,15 +76,9 @@ def strokes_of(project: Project) -> str:
     )
 
 
-def data_of(
-    project: Project,
-    size: tuple[int, int],
-    surface: str,
-    camera: dict[str, Any],
-    exposure: float,
-    by_grid: PhotoCamera | None,
-) -> str:
+def data_of(project: Project, chosen: Chosen) -> str:
     """Returns the values of a project as C."""
+    size, surface, camera, exposure, by_grid = chosen
     room = project["room"]["name"] if project["room"] else ""
     out = [
         f"static const char *const photo_file = {quoted(project['photo']['name'])};\n",
@@ -178,13 +172,6 @@ def mark(name: str) -> str:
     return rf" *(?:/\*|//) \[{name}\](?: \*/)?\n"
 
 
-def program(
-    project: Project,
-    size: tuple[int, int],
-    surface: str,
-    camera: dict[str, Any],
-    exposure: float,
-    by_grid: PhotoCamera | None = None,
-) -> str:
-    """Returns the text of the program, from the arguments of program.program."""
-    return filled(SOURCE, project, by_grid, data_of(project, size, surface, camera, exposure, by_grid))
+def program(project: Project, chosen: Chosen) -> str:
+    """Returns the text of the program."""
+    return filled(SOURCE, project, chosen.by_grid, data_of(project, chosen))

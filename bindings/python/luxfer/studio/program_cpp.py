@@ -11,7 +11,7 @@ from typing import Any
 from . import grid, mix
 from .light import MAX_LAMP_DISTANCE
 from .live import PHASES
-from .program import PhotoCamera
+from .program import Chosen, PhotoCamera
 from .program_c import filled, floats, numbers, one_float, quoted
 from .project import Project
 
@@ -73,15 +73,9 @@ def mix_of(project: Project) -> str:
     )
 
 
-def data_of(
-    project: Project,
-    size: tuple[int, int],
-    surface: str,
-    camera: dict[str, Any],
-    exposure: float,
-    by_grid: PhotoCamera | None,
-) -> str:
+def data_of(project: Project, chosen: Chosen) -> str:
     """Returns the values of a project as C++."""
+    size, surface, camera, exposure, by_grid = chosen
     room = project["room"]["name"] if project["room"] else ""
     is_plain = mix.is_plain(project["mix"], project["added"])
     return "".join(
@@ -105,13 +99,6 @@ def data_of(
     )
 
 
-def program(
-    project: Project,
-    size: tuple[int, int],
-    surface: str,
-    camera: dict[str, Any],
-    exposure: float,
-    by_grid: PhotoCamera | None = None,
-) -> str:
-    """Returns the text of the program, from the arguments of program.program."""
-    return filled(SOURCE, project, by_grid, data_of(project, size, surface, camera, exposure, by_grid))
+def program(project: Project, chosen: Chosen) -> str:
+    """Returns the text of the program."""
+    return filled(SOURCE, project, chosen.by_grid, data_of(project, chosen))

@@ -83,7 +83,8 @@ def _text(path: Path, text: str) -> None:
 def _program(path: Path, wanted: Wanted, light: Light, written: Callable[..., str]) -> None:
     surface = wanted.project["surface"] or light.surface
     camera = light.camera(wanted.project)
-    _text(path, written(wanted.project, wanted.size, surface, camera, light.exposure, light.camera_by_grid))
+    chosen = program.Chosen(wanted.size, surface, camera, light.exposure, light.camera_by_grid)
+    _text(path, written(wanted.project, chosen))
 
 
 def _usd(path: Path, wanted: Wanted, light: Light) -> None:
