@@ -1,11 +1,12 @@
 //! Geometry of the plane and of space in `f64`: homographies, the pinhole camera and its vanishing points, radial
-//! distortion, polygons, small linear systems, robust statistics.
+//! distortion, polygons, lattices, small linear systems, robust statistics.
 //!
 //! Image points are in pixels, x right, y down, with the centre of the top-left pixel at (0.5, 0.5). Camera space is x
 //! right, y down, z forward. Homogeneous points are divided by their third coordinate only where necessary, because a
 //! vanishing point may be at infinity.
 
 pub mod homography;
+pub mod lattice;
 pub mod linear;
 pub mod perspective;
 pub mod photo_map;

@@ -106,6 +106,8 @@ pub struct View {
     pub undone: f64,
     /// The prior of the focal length: from the photo's metadata, or else the typical value for photos of rooms.
     pub expected_focal: FocalPrior,
+    /// Number of lamps on a lattice that determine the view; 0 if no lattice does.
+    pub lattice_lamps: usize,
 }
 
 impl View {
@@ -263,6 +265,7 @@ fn view_through(
         distortion: None,
         undone: lens.bend * 0.25 * DVec2::new(width as f64, height as f64).length_squared(),
         expected_focal: oriented.expected,
+        lattice_lamps: 0,
     })
 }
 

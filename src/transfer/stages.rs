@@ -111,8 +111,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// Returns a view in which all lamps, once unwarped, have the same size and shape; `None` if the photo's lines
-    /// determine the view, if the caller has set it, or if the lamps do not fit the new view clearly better.
+    /// Returns a view in which all lamps, once unwarped, have the same size and shape or lie on a lattice; `None` if the
+    /// caller has set the view, or if the lamps do not fit another view clearly better.
     pub(super) fn corrected_view(&self, job: Job) -> Result<Option<rectify::View>> {
         let Results { view: Some(view), plane: Some(plane), lights: Some(lights), .. } = &self.results else {
             return Ok(None);
@@ -121,7 +121,9 @@ impl Transfer {
             return Ok(None);
         }
         let by_lines = self.results.view_by_lines.as_ref().unwrap_or(view);
-        by_lines.with_lamps_alike(&plane.mask, &lights.mask, job)
+        // A lattice that was found before outranks lamps that show no lattice or a smaller one.
+        let corrected = by_lines.corrected_by_lamps(&plane.mask, &lights.mask, job)?;
+        Ok(corrected.filter(|corrected| corrected.lattice_lamps >= view.lattice_lamps))
     }
 
     /// Replaces the view by the corrected one, if there is one. Returns whether the view was replaced.

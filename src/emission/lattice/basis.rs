@@ -29,22 +29,6 @@ pub fn straight(period: DVec2, max_slant: f64) -> DVec2 {
     }
 }
 
-/// The two shortest vectors that span the same lattice as the given ones (Lagrange's reduction).
-pub fn reduced([mut a, mut b]: [DVec2; 2]) -> [DVec2; 2] {
-    // The number of steps grows only with the logarithm of the vectors' lengths: 64 steps suffice for any image.
-    for _ in 0..64 {
-        if b.length_squared() < a.length_squared() {
-            std::mem::swap(&mut a, &mut b);
-        }
-        let times = (a.dot(b) / a.length_squared()).round();
-        if times == 0.0 || !times.is_finite() {
-            break;
-        }
-        b -= a * times;
-    }
-    [a, b]
-}
-
 /// Refines the first `count` (1 or 2) vectors of `basis`, called `a` and `b` here, by a least-squares fit to the
 /// centres of lamps. A pair of lamps takes part if the two lamps have about equal sizes, and if the vector between
 /// their centres is about `i a + j b` with integers `i` and `j`. The first pass uses close pairs only, the second more

@@ -3,6 +3,7 @@
 
 use super::basis;
 use crate::error::{Error, Result};
+use crate::geometry::lattice::reduced;
 use glam::{DMat2, DVec2};
 
 /// A row of lamps counts as parallel to an axis if the tangent of the angle between them is below this.
@@ -77,7 +78,7 @@ impl Law {
     /// parallel. Laws other than lattices are returned unchanged.
     pub fn aligned(self) -> Self {
         match self {
-            Self::Lattice(found) => Self::Lattice(basis::reduced(found).map(aligned)),
+            Self::Lattice(found) => Self::Lattice(reduced(found).map(aligned)),
             other => other,
         }
     }

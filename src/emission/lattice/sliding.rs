@@ -6,6 +6,7 @@
 
 use super::{basis, law};
 use crate::emission::exemplar::Exemplar;
+use crate::geometry::lattice::reduced;
 use glam::DVec2;
 
 /// A shift slides lights along themselves if it moves at least this share of the lit pixels onto pixels of the same
@@ -15,7 +16,7 @@ const MIN_OVERLAP: f64 = 0.3;
 /// If one of the short vectors of the lattice slides the lights along the x or the y axis, returns the direction of
 /// this axis and the period across it. `None` if no vector does.
 pub fn find(exemplar: &Exemplar, found: [DVec2; 2]) -> Option<[DVec2; 2]> {
-    let [a, b] = basis::reduced(found);
+    let [a, b] = reduced(found);
     [[a, b], [b, a], [a - b, a], [a + b, a]].into_iter().find_map(|[slide, across]| {
         let aligned = law::aligned(slide);
         let (axis, period) = match () {

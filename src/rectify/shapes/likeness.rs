@@ -1,11 +1,9 @@
 //! Measures how similar the lamp shapes on a plane are to each other in fronto-parallel view, for a given tilt of the
 //! plane.
 
-use crate::error::Result;
+use super::tilt::Tilt;
+use crate::geometry::Radial;
 use crate::geometry::robust::weighted_median;
-use crate::geometry::{Perspective, Radial};
-use crate::image::Image;
-use crate::image::regions::{Moments, Regions};
 use crate::maths;
 use glam::{DMat2, DVec2, DVec3};
 
@@ -14,10 +12,8 @@ use glam::{DMat2, DVec2, DVec3};
 const BORDER_ERROR: f64 = 0.7;
 /// Standard deviation of the relative differences in length or width among lamps of one kind. [bench photos:tune]
 const VARIETY: f64 = 0.08;
-/// Regions with fewer pixels than this are ignored, because the pixel grid dominates their form. [bench photos:tune]
-const MIN_PIXELS: f64 = 12.0;
 /// Only this number of the largest regions is used: more regions take time and add no certainty. [bench photos:tune]
-const MAX_SHAPES: usize = 32;
+pub const MAX_SHAPES: usize = 32;
 /// A tilt of the plane is rejected if the sine of the angle between the plane and the ray through a shape's centre is
 /// below this. [bench photos:tune]
 const MIN_INCIDENCE: f64 = 0.05;
@@ -81,7 +77,7 @@ fn without_border(covariance: DMat2, width: f64) -> DMat2 {
 impl Shape {
     /// The shape of a region with this centre and covariance in the photo; both `centre` and `lens` are relative to the
     /// principal point.
-    fn new(centre: DVec2, covariance: DMat2, lens: &Radial, bloom_unit: f64) -> Self {
+    pub fn new(centre: DVec2, covariance: DMat2, lens: &Radial, bloom_unit: f64) -> Self {
         let mut covariances = BLOOMS.map(|bloom| without_border(covariance, bloom * bloom_unit));
         if !lens.is_none() {
             let derivative = lens.derivative(centre);
@@ -96,57 +92,50 @@ impl Shape {
 
     /// Returns the form of the shape on the plane at distance 1 from the camera. `None` if the ray to the shape misses
     /// the plane or meets it at too small an angle.
-    fn on_plane(&self, normal: DVec3, focal: f64, bloom: usize) -> Option<Form> {
-        let ray = (self.centre / focal).extend(1.0);
-        let depth = normal.dot(ray);
-        if !(depth >= MIN_INCIDENCE * ray.length()) {
-            return None;
-        }
-        let (right, down) = normal.any_orthonormal_pair();
-        let derivative = |axis: DVec3| (axis - ray * (normal.dot(axis) / depth)) / (depth * focal);
-        let column = |axis: DVec3| DVec2::new(right.dot(derivative(axis)), down.dot(derivative(axis)));
-        let jacobian = DMat2::from_cols(column(DVec3::X), column(DVec3::Y));
+    fn on_plane(&self, tilt: &Tilt, bloom: usize) -> Option<Form> {
+        let (_, jacobian) = onto_plane(self.centre, tilt)?;
         let ([long, short], angle) = axes(jacobian * self.covariances[bloom] * jacobian.transpose());
         Some(Form { log_size: 0.5 * maths::ln(long * short), stretch: angle * (0.5 * maths::ln(long / short)) })
     }
 }
 
-/// Finds the largest regions of a mask, at most [`MAX_SHAPES`]. Regions that touch the border of the photo or have
-/// fewer than [`MIN_PIXELS`] pixels are left out.
-pub fn of_mask(mask: &Image, camera: &Perspective) -> Result<Vec<Shape>> {
-    let (width, height) = (mask.width, mask.height);
-    let mut whole = Regions::of(mask)?.moments([width, height])?;
-    whole.retain(|region| !region.is_cut && region.area >= MIN_PIXELS);
-    whole.sort_by(|a, b| b.area.total_cmp(&a.area));
-    whole.truncate(MAX_SHAPES);
-    let bloom_unit = BLOOM_UNIT * width.max(height) as f64;
-    let lens = Radial { centre: DVec2::ZERO, bend: camera.bend };
-    let shape = |region: &Moments| Shape::new(region.centre - camera.principal, region.covariance, &lens, bloom_unit);
-    Ok(whole.iter().map(shape).collect())
+/// Projects a pixel, given relative to the principal point, onto the plane at distance 1 from the camera. Returns the
+/// point in coordinates of the plane, and the derivative of these coordinates by the pixel. `None` if the ray misses
+/// the plane or meets it at too small an angle.
+pub fn onto_plane(pixel: DVec2, &Tilt { normal, focal }: &Tilt) -> Option<(DVec2, DMat2)> {
+    let ray = (pixel / focal).extend(1.0);
+    let depth = normal.dot(ray);
+    if !(depth >= MIN_INCIDENCE * ray.length()) {
+        return None;
+    }
+    let (right, down) = normal.any_orthonormal_pair();
+    let on_plane = |v: DVec3| DVec2::new(right.dot(v), down.dot(v));
+    let derivative = |axis: DVec3| on_plane((axis - ray * (normal.dot(axis) / depth)) / (depth * focal));
+    Some((on_plane(ray / depth), DMat2::from_cols(derivative(DVec3::X), derivative(DVec3::Y))))
 }
 
 /// Returns how much the shapes on a plane differ from each other: minus twice the logarithm of the likelihood that
 /// they have equal size and form. Infinite if the camera sees a shape beyond the plane's horizon or at too small an
 /// angle.
-pub fn cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
-    min_cost(shapes, normal, focal, 1)
+pub fn cost(shapes: &[Shape], tilt: &Tilt) -> f64 {
+    min_cost(shapes, tilt, 1)
 }
 
 /// Like [`cost`], but faster: tries only every third width of bloom.
-pub fn rough_cost(shapes: &[Shape], normal: DVec3, focal: f64) -> f64 {
-    min_cost(shapes, normal, focal, 3)
+pub fn rough_cost(shapes: &[Shape], tilt: &Tilt) -> f64 {
+    min_cost(shapes, tilt, 3)
 }
 
-fn min_cost(shapes: &[Shape], normal: DVec3, focal: f64, step: usize) -> f64 {
-    let cost = |bloom: usize| maths::powi(BLOOMS[bloom] / BLOOM_SPREAD, 2) + cost_without(shapes, normal, focal, bloom);
+fn min_cost(shapes: &[Shape], tilt: &Tilt, step: usize) -> f64 {
+    let cost = |bloom: usize| maths::powi(BLOOMS[bloom] / BLOOM_SPREAD, 2) + cost_without(shapes, tilt, bloom);
     (0..BLOOMS.len()).step_by(step).map(cost).fold(f64::INFINITY, f64::min)
 }
 
 /// Computes the cost of the shapes after bloom of the width `BLOOMS[bloom]` is removed from them.
-fn cost_without(shapes: &[Shape], normal: DVec3, focal: f64, bloom: usize) -> f64 {
+fn cost_without(shapes: &[Shape], tilt: &Tilt, bloom: usize) -> f64 {
     let mut forms = Vec::with_capacity(shapes.len());
     for shape in shapes {
-        let Some(form) = shape.on_plane(normal, focal, bloom) else { return f64::INFINITY };
+        let Some(form) = shape.on_plane(tilt, bloom) else { return f64::INFINITY };
         forms.push((form, shape));
     }
     let median = |value: &dyn Fn(&Form) -> f64| {

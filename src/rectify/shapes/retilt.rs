@@ -1,6 +1,7 @@
-//! Corrects a view so that the plane of the lamps has the tilt that was estimated from the shapes of the lamps.
+//! Corrects a view so that the plane of the lamps has the tilt that was estimated from the lamps.
 
-use super::likeness::{self, Shape};
+use super::evidence::Evidence;
+use super::lattice::Lattice;
 use super::tilt::{Tilt, TiltEstimate};
 use crate::geometry::{FocalSource, Perspective, Segment};
 use crate::maths;
@@ -9,7 +10,7 @@ use crate::rectify::{VanishingPoint, View, camera, manhattan};
 use glam::{DMat3, DVec3};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
-/// Limits for accepting the correction of a tilt by the lines. `MAX_LOSS`: maximum increase of the shapes' cost over
+/// Limits for accepting the correction of a tilt by the lines. `MAX_LOSS`: maximum increase of the lamps' cost over
 /// the cost with the uncorrected tilt. `MIN_EXPLAINED`: minimum score of the corrected axes; the score is about the
 /// share of the lines that run along the axes. [bench photos:tune]
 const MAX_LOSS: f64 = 2.0;
@@ -23,7 +24,7 @@ const MIN_SUPPORT: usize = 3;
 impl View {
     /// Returns the view whose plane has the tilt in `found`. The axes are rotated about the plane's normal so that
     /// most lines run along them.
-    pub(super) fn retilted(&self, found: &TiltEstimate, shapes: &[Shape], [width, height]: [usize; 2]) -> View {
+    pub(super) fn retilted(&self, found: &TiltEstimate, lamps: &Evidence, [width, height]: [usize; 2]) -> View {
         let frame = Frame::new(width, height, self.perspective.principal);
         let (segments, lens): (Vec<Segment>, _) =
             (self.segments.iter().map(|s| s.0).collect(), self.perspective.lens());
@@ -32,12 +33,11 @@ impl View {
         let lines: Vec<WeightedLine> = indexed.iter().map(|(_, line)| *line).collect();
 
         // Rotate the axes to run along the lines. Then let the lines correct the axes and the focal length, and keep
-        // the correction only if enough lines and the shapes agree with it.
+        // the correction only if enough lines and the lamps agree with it.
         let start = turned(&lines, found.tilt.normal, found.tilt.focal / frame.scale);
         let corrected = manhattan::polished(&lines, start, found.tilt.focal / frame.scale);
         let tilt = Tilt { normal: corrected.axes.col(0), focal: corrected.focal * frame.scale };
-        let cost = |tilt: &Tilt| likeness::cost(shapes, tilt.normal, tilt.focal);
-        let agrees = corrected.score > MIN_EXPLAINED && cost(&tilt) < cost(&found.tilt) + MAX_LOSS;
+        let agrees = corrected.score > MIN_EXPLAINED && lamps.cost(&tilt) < lamps.cost(&found.tilt) + MAX_LOSS;
         let (directions, Tilt { normal, focal }) = if agrees { (corrected.axes, tilt) } else { (start, found.tilt) };
         let axes = named(directions);
 
@@ -61,7 +61,16 @@ impl View {
         let segments = segments.into_iter().zip(members).collect();
         // The lamps and the prior determine the focal length at least as well as the prior alone.
         let focal_spread = found.focal_spread.min(self.expected_focal.spread);
-        View { segments, vanishing_points, perspective, focal_spread, squareness: [None; 3], ..self.clone() }
+        let lattice_lamps = lamps.lattice.as_ref().map_or(0, Lattice::count);
+        View {
+            segments,
+            vanishing_points,
+            perspective,
+            focal_spread,
+            squareness: [None; 3],
+            lattice_lamps,
+            ..self.clone()
+        }
     }
 }
 

@@ -42,6 +42,7 @@ fn view(normal: DVec3, error: f64) -> View {
         distortion: None,
         undone: 0.0,
         expected_focal,
+        lattice_lamps: 0,
     }
 }
 
@@ -67,7 +68,7 @@ fn scattered(radius: impl Fn(usize) -> f64) -> Vec<(DVec2, f64)> {
 
 fn corrected(view: &View, lamps: &Image) -> Option<View> {
     let everywhere = Image::from_fn(SIZE[0], SIZE[1], |_, _| [1.0]).unwrap();
-    view.with_lamps_alike(&everywhere, lamps, Monitor::default().job()).unwrap()
+    view.corrected_by_lamps(&everywhere, lamps, Monitor::default().job()).unwrap()
 }
 
 fn angle(view: &View) -> f64 {
@@ -120,6 +121,61 @@ fn masks_without_shapes_show_nothing() {
     }
     let nowhere = discs(&[]);
     assert!(
-        wrong.with_lamps_alike(&nowhere, &discs(&scattered(|_| 0.06)), Monitor::default().job()).unwrap().is_none()
+        wrong.corrected_by_lamps(&nowhere, &discs(&scattered(|_| 0.06)), Monitor::default().job()).unwrap().is_none()
     );
+}
+
+/// Places of lamps on a lattice whose steps, at any angle to the camera, are at a right angle.
+fn lattice(columns: usize, rows: usize, turn: f64) -> Vec<DVec2> {
+    let (step, across) = (DVec2::from_angle(turn) * 0.25, DVec2::from_angle(turn).perp() * 0.2);
+    let place = |k: usize| {
+        let (i, j) =
+            ((k % columns) as f64 - 0.5 * (columns - 1) as f64, (k / columns) as f64 - 0.5 * (rows - 1) as f64);
+        DVec2::new(0.0, 1.0) + step * i + across * j
+    };
+    (0..columns * rows).map(place).collect()
+}
+
+/// Radii that tell nothing about the tilt.
+const RADII: [f64; 5] = [0.025, 0.045, 0.03, 0.055, 0.035];
+
+fn unlike(places: &[DVec2]) -> Vec<(DVec2, f64)> {
+    places.iter().enumerate().map(|(k, &place)| (place, RADII[k % RADII.len()])).collect()
+}
+
+#[test]
+fn a_lattice_shows_the_tilt_of_its_plane_although_its_lamps_and_the_lines_contradict_it() {
+    // Lines that are certain but wrong, for instance rays of glare.
+    let wrong = view(DVec3::new(0.4, -0.4, 0.8).normalize(), 0.01);
+    let mut places = lattice(4, 3, 0.4);
+    places.remove(5);
+    let found = corrected(&wrong, &discs(&unlike(&places))).expect("the lattice contradicts the lines");
+    let error = found.vanishing_points[1].error;
+    assert!(angle(&found) < 0.02 && angle(&found) < 3.0 * error, "{} rad, stated {error}", angle(&found));
+    assert!((found.perspective.focal / FOCAL).ln().abs() < 0.05, "{}", found.perspective.focal);
+    assert_eq!(found.lattice_lamps, 11);
+}
+
+#[test]
+fn lamps_beside_the_lattice_do_not_hide_it() {
+    let wrong = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.15);
+    let mut lamps = unlike(&lattice(4, 3, 0.4));
+    lamps.extend([(DVec2::new(0.02, 0.64), 0.03), (DVec2::new(-0.55, 1.1), 0.03)]);
+    let found = corrected(&wrong, &discs(&lamps)).expect("most lamps lie on a lattice");
+    assert!(angle(&found) < 0.02 && found.lattice_lamps == 12, "{} rad, {}", angle(&found), found.lattice_lamps);
+}
+
+#[test]
+fn too_few_lamps_on_a_lattice_and_scattered_lamps_do_not_overrule_lines() {
+    let certain = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.01);
+    let places: Vec<DVec2> = scattered(|_| 0.0).iter().map(|lamp| lamp.0).collect();
+    for places in [&lattice(5, 1, 0.4)[..], &lattice(2, 2, 0.4), &places] {
+        assert!(corrected(&certain, &discs(&unlike(places))).is_none());
+    }
+}
+
+#[test]
+fn a_lattice_that_agrees_with_the_lines_changes_nothing() {
+    let right = View { perspective: camera(true_normal(), FOCAL), ..view(true_normal(), 0.15) };
+    assert!(corrected(&right, &discs(&unlike(&lattice(4, 3, 0.4)))).is_none());
 }

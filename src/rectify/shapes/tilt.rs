@@ -1,6 +1,7 @@
-//! Searches for the tilt of a plane at which the lamp shapes on the plane, once unwarped, agree best in size and form.
+//! Searches for the tilt of a plane at which the lamps on the plane, once unwarped, agree best in size and form and lie
+//! best on a lattice.
 
-use super::likeness::{self, Shape};
+use super::evidence::Evidence;
 use crate::error::Result;
 use crate::exec;
 use crate::geometry::linear;
@@ -39,7 +40,8 @@ const ROLL_ERROR: f64 = 0.15;
 const MAX_ROLL_COST: f64 = 9.0;
 /// A tilt is rejected if the cosine of the angle between its normal and the normal that the lines imply is below this.
 /// The test is loose: it allows angles up to 78 degrees. It rejects every tilt that puts the plane on the other side of
-/// the camera, such as a floor instead of a ceiling. [bench photos:tune]
+/// the camera, such as a floor instead of a ceiling. A lattice of lamps itself shows on which side its plane lies; no
+/// tilt is then rejected. [bench photos:tune]
 const MIN_COSINE: f64 = 0.2;
 
 /// The normal of a plane, which points away from the camera, and the focal length in pixels.
@@ -59,49 +61,49 @@ pub struct TiltEstimate {
     pub focal_spread: f64,
 }
 
-/// The total cost of a tilt: the differences between the shapes, plus the deviations from the lines, from the expected
-/// focal length and from an upright camera.
+/// The total cost of a tilt: the cost of the lamps, plus the deviations from the lines, from the expected focal length
+/// and from an upright camera.
 struct TotalCost<'a> {
-    shapes: &'a [Shape],
+    lamps: &'a Evidence,
     /// The normal that the lines imply, and its standard deviation in radians.
     lines: DVec3,
     lines_error: f64,
     expected: FocalPrior,
 }
 
-/// A function that computes the cost of the shapes from the normal of their plane and the focal length.
-type Cost = fn(&[Shape], DVec3, f64) -> f64;
+/// A function that computes the cost of the lamps from the tilt of their plane.
+type Cost = fn(&Evidence, &Tilt) -> f64;
 
 impl TotalCost<'_> {
     fn of(&self, tilt: &Tilt) -> f64 {
-        self.by(likeness::cost, tilt)
+        self.by(Evidence::cost, tilt)
     }
 
     fn by(&self, cost: Cost, tilt: &Tilt) -> f64 {
         let cosine = tilt.normal.dot(self.lines);
-        if cosine < MIN_COSINE {
+        if cosine < MIN_COSINE && self.lamps.lattice.is_none() {
             return f64::INFINITY;
         }
         let by_focal = maths::powi(maths::ln(tilt.focal / self.expected.focal) / self.expected.spread, 2);
-        let by_lines = maths::powi(maths::acos(cosine.min(1.0)) / self.lines_error, 2).min(MAX_LINES_COST);
+        let by_lines = maths::powi(maths::acos(cosine.clamp(-1.0, 1.0)) / self.lines_error, 2).min(MAX_LINES_COST);
         // Compute the roll from the normal, but only for floors and ceilings. Roll does not change the normal of a
         // wall ahead of the camera, and this formula does not hold for side walls.
         let roll = maths::atan2(tilt.normal.x, tilt.normal.y.abs());
         let is_level = self.lines.y.abs() > self.lines.x.abs().max(self.lines.z.abs());
         let by_roll = if is_level { maths::powi(roll / ROLL_ERROR, 2).min(MAX_ROLL_COST) } else { 0.0 };
-        cost(self.shapes, tilt.normal, tilt.focal) + by_focal + by_lines + by_roll
+        cost(self.lamps, tilt) + by_focal + by_lines + by_roll
     }
 }
 
 /// Finds the tilt with the least cost, given the normal and focal length that the lines imply. `None` if the cost of
 /// every tilt tried is infinite.
 pub fn find(
-    shapes: &[Shape],
+    lamps: &Evidence,
     (by_lines, error): (Tilt, f64),
     expected: FocalPrior,
     job: Job,
 ) -> Result<Option<TiltEstimate>> {
-    let total = TotalCost { shapes, lines: by_lines.normal, lines_error: error, expected };
+    let total = TotalCost { lamps, lines: by_lines.normal, lines_error: error, expected };
     let is_known = expected.spread < KNOWN_FOCAL;
     let steps = if is_known { 0 } else { FOCALS };
     let focals = (-steps..=steps).map(|k| expected.focal * maths::exp(FOCAL_STEP * f64::from(k)));
@@ -112,9 +114,11 @@ pub fn find(
     let rough = exec::map(DIRECTIONS, job.part(0.0, 0.8), |k| {
         let normal = direction(k);
         let tilts = focals.iter().map(|&focal| Tilt { normal, focal });
-        tilts.map(|tilt| (total.by(likeness::rough_cost, &tilt), tilt)).min_by(|a, b| a.0.total_cmp(&b.0))
+        tilts.map(|tilt| (total.by(Evidence::rough_cost, &tilt), tilt)).min_by(|a, b| a.0.total_cmp(&b.0))
     })?;
-    let mut starts: Vec<(f64, Tilt)> = rough.into_iter().flatten().filter(|start| start.0.is_finite()).collect();
+    let of_lattice = lamps.tilts(expected.focal, is_known).map(|tilt| (total.of(&tilt), tilt));
+    let all = rough.into_iter().flatten().chain(of_lattice);
+    let mut starts: Vec<(f64, Tilt)> = all.filter(|start| start.0.is_finite()).collect();
     starts.sort_by(|a, b| a.0.total_cmp(&b.0));
     starts.truncate(STARTS);
     let refined = exec::map(starts.len(), job.part(0.8, 1.0), |k| refine(&total, starts[k].1, is_known))?;
