@@ -255,7 +255,8 @@ typedef struct luxfer_rectify_report {
 #define LUXFER_FOCAL_FROM_METADATA 3
 
 /**
- * Estimated so that the lamps have equal sizes and shapes in the frontal view of their plane (lighting transfer only).
+ * Estimated so that the lamps have equal sizes and shapes, or lie on a lattice, in the frontal view of their plane
+ * (lighting transfer only).
  */
 #define LUXFER_FOCAL_FROM_LAMPS 4
 

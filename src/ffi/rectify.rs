@@ -66,7 +66,8 @@ pub const LUXFER_FOCAL_FROM_VANISHING_POINTS: luxfer_focal_source = 1;
 pub const LUXFER_FOCAL_ASSUMED: luxfer_focal_source = 2;
 /// Mainly from the metadata of the photo's file; see luxfer_image_get_metadata.
 pub const LUXFER_FOCAL_FROM_METADATA: luxfer_focal_source = 3;
-/// Estimated so that the lamps have equal sizes and shapes in the frontal view of their plane (lighting transfer only).
+/// Estimated so that the lamps have equal sizes and shapes, or lie on a lattice, in the frontal view of their plane
+/// (lighting transfer only).
 pub const LUXFER_FOCAL_FROM_LAMPS: luxfer_focal_source = 4;
 
 /// An image of a rectification: a LUXFER_RECTIFY_ value.

@@ -1,9 +1,10 @@
 //! What the lamps of a photo tell about the tilt of their plane: they are alike, and most of them may lie on a lattice.
 
-use super::lattice::{Lamp, Lattice};
+use super::lattice::Lattice;
 use super::likeness::{self, Shape};
 use super::tilt::Tilt;
 use crate::error::Result;
+use crate::geometry::lattice::Spot;
 use crate::geometry::{Perspective, Radial};
 use crate::image::Image;
 use crate::image::regions::Regions;
@@ -38,7 +39,7 @@ impl Evidence {
         let (mut shapes, mut lamps) = (Vec::new(), Vec::with_capacity(whole.len()));
         for region in &whole {
             let centre = region.centre - camera.principal;
-            lamps.push(Lamp { centre: lens.ideal(centre), inverse: region.covariance.inverse() });
+            lamps.push(Spot { centre: lens.ideal(centre), inverse: region.covariance.inverse() });
             if shapes.len() < likeness::MAX_SHAPES {
                 shapes.push(Shape::new(centre, region.covariance, &lens, bloom_unit));
             }

@@ -1,27 +1,14 @@
 //! The lattice on which most lamps of a photo lie, and how well it fits a tilt of their plane.
 //!
-//! The centres of the lamps are the images of lattice sites under a homography ("Detection, Rectification and
-//! Segmentation of Coplanar Repeated Patterns", Pritts, Chum and Matas, CVPR 2014), which shows the horizon of the plane.
+//! The centres of the lamps are the images of lattice sites under a homography, which shows the horizon of the plane.
 //! Bloom and overexposure change the shapes of lamps, but hardly their centres.
 
-use super::growth::{self, Growth};
 use super::likeness::onto_plane;
 use super::tilt::Tilt;
-use crate::geometry::lattice::reduced;
+use crate::geometry::lattice::{SeenLattice, Spot, reduced};
 use crate::geometry::{Homography, linear};
 use crate::maths;
 use glam::{DMat2, DVec2, DVec3};
-
-/// Minimum number of lamps on a lattice: four lamps determine a homography, and two further lamps confirm it.
-/// [convention]
-const MIN_SITES: usize = 6;
-/// Minimum share of all lamps that lie on the lattice. [bench photos:tune]
-const MIN_SHARE: f64 = 0.7;
-/// Maximum number of sites per lamp, in the smallest rectangle of sites that holds all lamps. Any lamps fit a lattice
-/// that has enough sites. [convention]
-const MAX_SITES_PER_LAMP: f64 = 4.0;
-/// Only this number of the largest lamps is used: more lamps take time and add no certainty. [bench photos:tune]
-const MAX_LAMPS: usize = 64;
 
 /// Standard deviation of a lamp's centre: in photo pixels (`CENTRE_ERROR`), and in lattice steps (`SITE_ERROR`), because
 /// ceilings are built with tolerances. [bench photos:tune]
@@ -37,16 +24,6 @@ const MAX_ASYMMETRY_COST: f64 = 8.0;
 
 /// Degrees of freedom of a homography. [convention: exact]
 const HOMOGRAPHY_FREEDOM: f64 = 8.0;
-
-/// A lamp in the photo.
-#[derive(Clone, Copy, Debug)]
-pub struct Lamp {
-    /// Centre relative to the principal point, in pixels of the photo that an ideal lens would take.
-    pub centre: DVec2,
-    /// Inverse of the covariance of the lamp's pixels. Distances measured in units of the lamp's extent hardly depend
-    /// on the tilt of the plane.
-    pub inverse: DMat2,
-}
 
 /// A lamp on a site of the lattice.
 #[derive(Clone, Copy, Debug)]
@@ -67,24 +44,16 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Finds the lattice on which most of the lamps lie; `None` if there is none. The lamps must be sorted by
-    /// decreasing area.
-    pub fn find(lamps: &[Lamp]) -> Option<Self> {
-        let lamps = &lamps[..lamps.len().min(MAX_LAMPS)];
-        if lamps.len() < MIN_SITES {
-            return None;
-        }
-        growth::largest(lamps).filter(is_plausible).map(|growth| Self::new(&growth, lamps))
-    }
-
-    fn new(growth: &Growth, lamps: &[Lamp]) -> Self {
-        let sites = growth.steps.iter().zip(lamps).filter_map(|(steps, lamp)| {
+    /// Finds the lattice on which most of the lamps lie; `None` if there is none. The centres of `lamps` are relative to
+    /// the principal point, in pixels of the photo that an ideal lens would take; the largest lamps must come first.
+    pub fn find(lamps: &[Spot]) -> Option<Self> {
+        let seen = SeenLattice::find(lamps)?;
+        let sites = seen.steps.iter().zip(lamps).filter_map(|(steps, lamp)| {
             let steps = (*steps)?;
-            let photo_step = derivative(&growth.to_photo, steps).determinant().abs().sqrt();
-            let variance = maths::powi(CENTRE_ERROR, 2) + maths::powi(SITE_ERROR * photo_step, 2);
+            let variance = maths::powi(CENTRE_ERROR, 2) + maths::powi(SITE_ERROR, 2) * seen.cell_area(steps);
             Some(Site { centre: lamp.centre, steps, variance })
         });
-        Self { sites: sites.collect(), to_photo: growth.to_photo }
+        Some(Self { sites: sites.collect(), to_photo: seen.to_image })
     }
 
     /// Number of lamps on the lattice.
@@ -147,26 +116,6 @@ impl Lattice {
         };
         Some(([a, b], placed.iter().map(square).sum()))
     }
-}
-
-/// Whether enough lamps lie on the lattice, and occupy enough of its sites.
-fn is_plausible(growth: &Growth) -> bool {
-    let sites = || growth.steps.iter().flatten();
-    let min = sites().fold(DVec2::INFINITY, |min, steps| min.min(*steps));
-    let max = sites().fold(DVec2::NEG_INFINITY, |max, steps| max.max(*steps));
-    let extent = max - min + 1.0;
-    let count = growth.count();
-    count >= MIN_SITES
-        && count as f64 >= MIN_SHARE * growth.steps.len() as f64
-        && extent.x * extent.y <= MAX_SITES_PER_LAMP * count as f64
-}
-
-/// Derivative of a homography at a point.
-fn derivative(map: &Homography, at: DVec2) -> DMat2 {
-    let mapped = map.apply_homogeneous(at);
-    let image = mapped.truncate() / mapped.z;
-    let column = |c: DVec3| (c.truncate() - image * c.z) / mapped.z;
-    DMat2::from_cols(column(map.0.x_axis), column(map.0.y_axis))
 }
 
 /// How a lattice is its own mirror image.

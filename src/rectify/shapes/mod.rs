@@ -7,13 +7,12 @@
 //! and parallel, and that lattices are symmetric. A lattice is certain enough to overrule lines: rays of glare and
 //! furniture make lines too.
 //! ```text
-//! mask of lamps ─┬▶ likeness ──────────┐
-//!                └▶ growth ─▶ lattice ─┴▶ evidence ─▶ tilt of their plane, focal length ─▶ retilt: rotation ─▶ View
+//! mask of lamps ─┬▶ likeness ┐
+//!                └▶ lattice ─┴▶ evidence ─▶ tilt of their plane, focal length ─▶ retilt: rotation ─▶ View
 //!                                                                        segments ─────────┘
 //! ```
 
 mod evidence;
-mod growth;
 mod lattice;
 mod likeness;
 mod retilt;
