@@ -59,7 +59,8 @@ typedef struct luxfer_render_params {
     uint32_t reserved;
     /**
      * Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
-     * Default 0: no preview, as for final images. The preview does not change the other images.
+     * Default 0: no preview, as for final images. The preview does not change the other images. After a cancel, a
+     * rendering with a preview keeps all images of the last preview, because one more preview would take too long.
      */
     float preview;
     /**

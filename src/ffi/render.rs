@@ -84,7 +84,8 @@ pub struct luxfer_render_params {
     /// Must be 0.
     pub reserved: u32,
     /// Strength of the noise filter for LUXFER_RENDER_PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
-    /// Default 0: no preview, as for final images. The preview does not change the other images.
+    /// Default 0: no preview, as for final images. The preview does not change the other images. After a cancel, a
+    /// rendering with a preview keeps all images of the last preview, because one more preview would take too long.
     pub preview: f32,
     /// Stop when luxfer_render_report.relative_error is at most this value, >= 0. With this target, paths go to the
     /// pixels where they reduce this error most. In this error, noise in dark areas counts as much as noise in bright

@@ -174,6 +174,20 @@ fn a_cancelled_render_leaves_what_was_published() {
 }
 
 #[test]
+fn a_cancelled_render_does_not_filter_its_last_film() {
+    let world = world(everything());
+    let params = Params { width: 64, height: 64, samples: 1 << 20, preview: 1.0, ..Params::default() };
+    let monitor = Monitor::default();
+    let mut published = 0;
+    let result = run(&world, &viewer(), &params, monitor.job(), &mut |film| {
+        assert!(film.preview.is_some());
+        published += 1;
+        monitor.cancel();
+    });
+    assert_eq!((result.unwrap_err(), published), (Error::cancelled(), 1));
+}
+
+#[test]
 fn a_render_stops_when_it_is_good_enough() {
     let world = world(everything());
     let base = Params { width: 16, height: 16, samples: 1 << 20, ..Params::default() };

@@ -80,9 +80,9 @@ const IN_ROW: f64 = 0.25;
 /// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
 /// [bench photos:tune]
 const ROUND: f64 = 1.25;
-/// Maximum CIELAB difference between the median colours of two rings of pixels: around a region off the plane, and
-/// around a lamp under a stroke. If the rings differ less, the region may lie on a part of the plane that the given
-/// mask of the plane misses. [bench photos:tune]
+/// Maximum CIELAB difference between the median colours of two rings of pixels: around a region off the plane and off the
+/// face of the room, and around a lamp under a stroke. If the rings differ less, the room may have been laid out too
+/// small. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
 /// If the lamps are proposed, lamps of one kind have areas that differ by at most the factor `KIND_AREA`, and aspects
 /// that differ by at most `KIND_ASPECT`, both measured on the face of the room. Bloom changes distant lamps more than
@@ -238,10 +238,12 @@ impl Search<'_> {
             let likeness = likeness.min(self.ring_likeness(&model, node as usize, &ring));
             let is_on_plane = ring.on_plane >= ON_PLANE;
             let lamps = || painted.iter().chain(&similar.found);
-            let is_beside = likeness >= 1.0 && !is_on_plane && (self.is_proposed || model.is_beside(&ring));
+            let is_off_plane = likeness >= 1.0 && !is_on_plane;
             let is_in_hole =
-                is_beside && self.is_on_face(node as usize) && self.resembles_known_lamp(lamps(), node as usize);
-            let is_in_row = is_beside && self.continues_row(lamps(), node as usize);
+                is_off_plane && self.is_on_face(node as usize) && self.resembles_known_lamp(lamps(), node as usize);
+            let is_in_row = is_off_plane
+                && (self.is_proposed || model.is_beside(&ring))
+                && self.continues_row(lamps(), node as usize);
             if is_in_hole || (is_on_plane && likeness >= 1.0) {
                 similar.found.push(node);
             }
@@ -371,7 +373,7 @@ impl Search<'_> {
         let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
             return Ok(false);
         };
-        let is_in_hole = || self.is_on_face(node as usize) && model.is_beside(&ring);
+        let is_in_hole = || self.is_on_face(node as usize);
         let has_contrast = self.ring_likeness(model, node as usize, &ring) >= ALIKE.contrast;
         Ok(has_contrast && (ring.on_plane >= ON_PLANE || is_in_hole()))
     }

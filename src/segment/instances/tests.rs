@@ -300,6 +300,22 @@ fn a_lamp_in_a_row_with_others_beyond_the_plane_is_distinguished_from_a_window()
 }
 
 #[test]
+fn a_lamp_whose_coloured_glow_leaves_a_hole_in_the_mask_of_the_plane_is_found() {
+    // Below the first lamp lies a lamp with a glow of another colour; neither the lamp nor the glow is in the mask.
+    let glow = [10, 60, 70, 92];
+    let mut features = features_with(&[[20, 20, 60, 32], [120, 20, 160, 32], [20, 70, 60, 82]]);
+    for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+        if is_in(glow, i % WIDTH, i / WIDTH) && pixel[0] < 90.0 {
+            pixel[0] += 10.0;
+            pixel[1] += 12.0;
+        }
+    }
+    let holed = Image::from_fn(WIDTH, HEIGHT, |x, y| [f32::from(y < 120 && !is_in(glow, x, y))]).unwrap();
+    let lamps = segment_in(&features, &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&holed));
+    assert!(lamps.mask.pixel(40, 76)[0] > 0.5);
+}
+
+#[test]
 fn without_strokes_lamps_beyond_the_plane_may_have_other_surroundings() {
     // As in the test above, but the ceiling beyond the mask is darker by 15 units of L*.
     let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();
