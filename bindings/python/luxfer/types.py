@@ -336,8 +336,8 @@ class FocalSource(IntEnum):
     FROM_METADATA = 3
     """Mainly from the metadata of the photo's file; see luxfer_image_get_metadata."""
     FROM_LAMPS = 4
-    """Estimated so that the lamps have equal sizes and shapes in the frontal view of their plane (lighting
-    transfer only)."""
+    """Estimated so that the lamps have equal sizes and shapes, or lie on a lattice, in the frontal view of
+    their plane (lighting transfer only)."""
 
 
 class Normalisation(IntEnum):
@@ -1598,7 +1598,9 @@ class RenderParams(TypedDict, total=False):
     mean of the image. The relative error of a block is the root mean square over its pixels."""
     preview: float
     """Strength of the noise filter for RenderImage.PREVIEW, in [0, 10]; 1 is usual, larger values blur more.
-    Default 0: no preview, as for final images. The preview does not change the other images."""
+    Default 0: no preview, as for final images. The preview does not change the other images. After a cancel, a
+    rendering with a preview keeps all images of the last preview, because one more preview would take too
+    long."""
     relative_error: float
     """Stop when RenderReport.relative_error is at most this value, >= 0. With this target, paths go to the
     pixels where they reduce this error most. In this error, noise in dark areas counts as much as noise in
