@@ -375,6 +375,30 @@ fn a_room_is_enlarged_to_hold_what_lies_beyond_its_walls_and_no_further() {
 }
 
 #[test]
+fn lamps_that_continue_regular_rows_may_enlarge_a_room_further_than_others() {
+    let camera = camera(0.0, 0.0, 0.0, 640, 480);
+    let small = Layout { sides: [0.8, 0.7, 0.4, 0.5], score: 0.0, trust: 0.0 };
+    let axes = super::box_room::facing_axes(&camera);
+    let pixel = |place: DVec3| {
+        let ray = axes * place;
+        let at = camera.principal + ray.truncate() * (camera.focal / ray.z);
+        (at.y as u32) * 640 + at.x as u32
+    };
+    // A lamp on the ceiling, and two regions beyond the back wall at 1.4 times the depth of the room.
+    let mut mask = Image::new(640, 480, 1).unwrap();
+    mask.data[pixel(DVec3::new(0.1, -0.4, 0.95)) as usize] = 1.0;
+    let regions = [[pixel(DVec3::new(0.1, -0.4, 1.4))], [pixel(DVec3::new(0.3, -0.4, 1.4))]];
+    let enlarged = |regular: [bool; 2]| {
+        let beyond = [0, 1].map(|k| Beyond { pixels: &regions[k], is_in_regular_row: regular[k] });
+        let lamps = LampsBeyond { mask: &mask, beyond: &beyond, is_uncertain: false, may_leave_out: false };
+        small.enlarged_for(&camera, &lamps).map(|(_, held)| held)
+    };
+    assert_eq!(enlarged([true, true]), Some(vec![0, 1]));
+    assert_eq!(enlarged([false, true]), Some(vec![1]));
+    assert_eq!(enlarged([false, false]), None);
+}
+
+#[test]
 fn the_plane_of_a_camera_that_looks_up_is_the_ceiling() {
     // Lines on the ceiling along both of its axes, such as the edges of beams. Two negative strokes lie on beams. If
     // the plane were the back wall, the upper one could lie on the ceiling.

@@ -13,6 +13,14 @@ pub enum Model {
     Quadratic,
 }
 
+/// A region like a lamp beyond the plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beyond {
+    pub region: Stroke,
+    /// Whether it continues a regular row of lamps of its size and shape.
+    pub is_in_regular_row: bool,
+}
+
 #[derive(Clone, Debug)]
 pub struct Segmentation {
     /// 1 where the confidence is above one half, else 0.
@@ -53,7 +61,7 @@ pub struct Segmentation {
     /// For lamps only: regions outside the given plane mask that are probably lamps. Each of them lies in a row with
     /// lamps that were found. Measured as if the plane continued there, it has the size and the shape of these lamps.
     /// Such regions suggest that the room is larger than its layout.
-    pub beyond: Vec<Stroke>,
+    pub beyond: Vec<Beyond>,
 }
 
 impl Segmentation {

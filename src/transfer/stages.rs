@@ -147,7 +147,10 @@ impl Transfer {
         };
         let Some(layout) = features.layout else { return Ok(false) };
         let is_proposed = plane.is_proposed && self.input.strokes.plane.is_empty();
-        let beyond: Vec<&[u32]> = lights.beyond.iter().map(|lamp| &lamp.pixels[..]).collect();
+        let beyond = lights.beyond.iter();
+        let beyond = beyond
+            .map(|lamp| features::Beyond { pixels: &lamp.region.pixels, is_in_regular_row: lamp.is_in_regular_row });
+        let beyond: Vec<features::Beyond> = beyond.collect();
         let lamps = features::LampsBeyond {
             mask: &lights.mask,
             beyond: &beyond,
@@ -155,7 +158,7 @@ impl Transfer {
             may_leave_out: is_proposed || lights.is_proposed,
         };
         let Some((layout, regions)) = layout.enlarged_for(&view.perspective, &lamps) else { return Ok(false) };
-        self.results.beyond = regions.into_iter().map(|k| lights.beyond[k].clone()).collect();
+        self.results.beyond = regions.into_iter().map(|k| lights.beyond[k].region.clone()).collect();
         self.compute_features(Some(layout), job.part(0.0, 0.5))?;
         self.segment_plane(job.part(0.5, 0.75))?;
         self.segment_lights(job.part(0.75, 1.0))?;

@@ -31,7 +31,7 @@ mod tree;
 use super::face;
 use super::input::Input;
 use super::samples::{self, Ownership};
-use super::segmentation::Segmentation;
+use super::segmentation::{Beyond, Segmentation};
 use super::strokes::Stroke;
 use crate::error::{Error, Result};
 use crate::features::CHANNELS;
@@ -186,9 +186,11 @@ fn segmentation(
     }
     let beyond = similar.beyond.iter().map(|&node| {
         let pixels = try_collect(tree.pixels(node).iter().copied())?;
-        Ok(Stroke { pixels, positive: true })
+        let is_in_regular_row =
+            search.is_in_regular_row(painted.iter().chain(&similar.found).chain(&similar.beyond), node);
+        Ok(Beyond { region: Stroke { pixels, positive: true }, is_in_regular_row })
     });
-    let beyond = beyond.collect::<Result<Vec<Stroke>>>()?;
+    let beyond = beyond.collect::<Result<Vec<Beyond>>>()?;
     let mut mask = Image::new(width, height, 1)?;
     mask.data.iter_mut().zip(&confidence.data).for_each(|(m, &c)| *m = f32::from(c > 0.5));
 

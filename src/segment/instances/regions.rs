@@ -159,6 +159,30 @@ impl OnFace {
         })
     }
 
+    /// Whether a node continues a regular row of lamps along u or along v. The least distance between two lamps of the
+    /// row is a step; all distances between its lamps are whole numbers of steps, and the node is one or two steps from
+    /// the nearest lamp, each within `tolerance` steps. Lamps are in a row with the node as in [`Self::are_in_row`].
+    pub fn continues_regular_row(&self, node: usize, lamps: &[usize], share: f64, tolerance: f64) -> bool {
+        [0, 1].into_iter().any(|along| {
+            let in_row = |lamp: &&usize| {
+                let [(at, extent), (other, other_extent)] = self.across(node, **lamp)[1 - along];
+                (at - other).abs() <= share * extent.max(other_extent)
+            };
+            let place = |k: usize| self.across(k, k)[along][0].0;
+            let mut row: Vec<f64> = lamps.iter().filter(in_row).map(|&lamp| place(lamp)).collect();
+            row.sort_by(f64::total_cmp);
+            row.dedup();
+            let steps: Vec<f64> = row.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let Some(step) = steps.iter().copied().reduce(f64::min).filter(|step| *step > 0.0) else { return false };
+            let is_whole = |length: f64, most: f64| {
+                let steps = length / step;
+                (steps - steps.round()).abs() <= tolerance && (1.0..=most).contains(&steps.round())
+            };
+            let nearest = row.iter().map(|at| (place(node) - at).abs()).fold(f64::INFINITY, f64::min);
+            is_whole(nearest, 2.0) && steps.iter().all(|&length| is_whole(length, f64::INFINITY))
+        })
+    }
+
     /// Returns the centres and extents of two nodes, as (centre, extent) for each node: first in u, which is across a
     /// row along v, then in v. The extent is the width w of a strip with the node's variance w² / 12. The variance
     /// within a pixel, a twelfth of its area, is added; it is the mean over the node's pixels, weighted by area.

@@ -77,6 +77,8 @@ const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the larger of
 /// their extents across the row. [bench photos:tune]
 const IN_ROW: f64 = 0.25;
+/// The distances between the lamps of a regular row may differ from whole steps by this share of a step. [bench photos:tune]
+const REGULAR: f64 = 0.15;
 /// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
 /// [bench photos:tune]
 const ROUND: f64 = 1.25;
@@ -516,6 +518,14 @@ impl Search<'_> {
     /// Whether a node lies in a row with a lamp of nearly its size and shape.
     fn continues_row<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: usize) -> bool {
         self.lamps_of_equal_shape(lamps, node).any(|&lamp| self.is_in_row(node, lamp))
+    }
+
+    /// Whether a node continues a regular row of whole lamps of nearly its size and shape.
+    pub fn is_in_regular_row<'a>(&self, lamps: impl Iterator<Item = &'a u32>, node: u32) -> bool {
+        let others = lamps.filter(|lamp| **lamp != node && !self.is_cut(**lamp));
+        let alike: Vec<usize> = self.lamps_of_equal_shape(others, node as usize).map(|&lamp| lamp as usize).collect();
+        let surface = self.regions.surface.as_ref();
+        surface.is_some_and(|surface| surface.continues_regular_row(node as usize, &alike, IN_ROW, REGULAR))
     }
 
     fn is_in_row(&self, node: usize, lamp: u32) -> bool {

@@ -289,14 +289,25 @@ fn a_lamp_in_a_row_with_others_beyond_the_plane_is_distinguished_from_a_window()
     let rows = [[20, 20, 60, 32], [120, 20, 160, 32], [22, 70, 60, 81], [200, 66, 206, 106]];
     let lamps = segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&cut));
     let columns = |s: &Stroke| s.pixels.iter().map(|p| *p as usize % WIDTH).collect::<Vec<_>>();
-    assert_eq!(lamps.beyond.len(), 1, "{:?}", lamps.beyond.iter().map(columns).collect::<Vec<_>>());
-    assert!(columns(&lamps.beyond[0]).iter().all(|x| (20..63).contains(x)));
+    assert_eq!(lamps.beyond.len(), 1, "{:?}", lamps.beyond.iter().map(|b| columns(&b.region)).collect::<Vec<_>>());
+    assert!(columns(&lamps.beyond[0].region).iter().all(|x| (20..63).contains(x)));
     // If the mask covers the whole ceiling, no lamp lies beyond it.
     assert!(
         segment_in(&features_with(&rows), &[stroke(true, &[[25.0, 26.0], [55.0, 26.0]])], Some(&ceiling()))
             .beyond
             .is_empty()
     );
+}
+
+#[test]
+fn a_lamp_beyond_the_plane_continues_a_regular_row_if_it_keeps_the_distances() {
+    let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 52)]).unwrap();
+    let is_regular = |top: usize| {
+        let row = [[20, 10, 60, 20], [20, 35, 60, 45], [20, top, 60, top + 10]];
+        let lamps = segment_in(&features_with(&row), &[stroke(true, &[[25.0, 15.0], [55.0, 15.0]])], Some(&cut));
+        lamps.beyond.iter().map(|beyond| beyond.is_in_regular_row).collect::<Vec<bool>>()
+    };
+    assert_eq!([60, 85, 72].map(is_regular), [[true], [true], [false]]);
 }
 
 #[test]
