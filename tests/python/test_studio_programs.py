@@ -68,9 +68,14 @@ class Programs(StudioCase):
         self.edit(lambda header: seen.update({header["type"]: header}), strokes=strokes, until="view")
         grid = inner_grid(seen["view"])
         grid[0] += 1.5
+        wide = max(seen["shapes"]["list"], key=lambda lamp: lamp["at"][0])
+        after = np.reshape(wide["corners"], (4, 2))
+        after = (1.25 * (after - after.mean(0)) + after.mean(0) + (-3.0, 2.0)).ravel().tolist()
+        twice = {"at": wide["at"], "before": wide["corners"], "after": after}
         self.edit(
             strokes=strokes,
             removed=[on_lamp],
+            reshaped=[twice, {**twice, "at": [1.0, 1.0]}],  # there is no lamp in the corner
             grid=grid,
             zones=[[0.0, 0.0, 1.0, 1.5]],
             pattern={**self.project["pattern"], "offset": [0.25, 0.1], "rotation": 0.1},
@@ -107,13 +112,17 @@ class Programs(StudioCase):
     @unittest.skipUnless(CC and CXX, "there is no compiler")
     def test_a_program_has_only_the_parts_that_it_needs(self):
         camera = {"position": (0, 1, 2), "target": (0, 1, 0), "fov_y": 1.0}
-        names = "B\u00fcro.png", "it's \"here\"??/.png", "back\\slash.png"
-        for name, changes in zip(names, ({}, {"removed": [[1.0, 2.0]]}, {"mix": {"1": 0.5}})):
+        names = "B\u00fcro.png", "it's \"here\"??/.png", "back\\slash.png", "turned.png"
+        square = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]
+        reshaped = [{"at": [0.5, 0.5], "before": square, "after": square}]
+        all_changes = {}, {"removed": [[1.0, 2.0]]}, {"mix": {"1": 0.5}}, {"reshaped": reshaped}
+        for name, changes in zip(names, all_changes):
             named = {"name": name, "sha256": "0" * 64}
             whole = project.checked({"luxfer_studio": 1, "photo": named, "room": named, **changes})
             for language, compile, mark in ((program_c, self.compile, "/* ["), (program_cpp, self.compile_cpp, "// [")):
                 text = language.program(whole, program.Chosen((72, 48), name, camera, 0.01))
                 self.assertEqual("take_out" in text, "removed" in changes)
+                self.assertEqual("reshape_lamps" in text, "reshaped" in changes)
                 self.assertEqual("mix_lamps" in text, "mix" in changes)
                 self.assertNotIn(mark, text)
                 source = self.folder / f"small{language.SOURCE.suffix}"

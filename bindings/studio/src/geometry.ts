@@ -111,3 +111,17 @@ export function inPhoto(view: View, [x, y]: [number, number]): [number, number] 
   for (let i = 0; i < 7; i++) s -= (s * (1 - t * s * s) - 1) / (1 - 3 * t * s * s);
   return [cx + dx * s, cy + dy * s];
 }
+
+/** The place on the unwarped plane of a pixel of the photo: the inverse of inPhoto. */
+export function onPlane(view: View, [x, y]: [number, number]): [number, number] {
+  const [cx, cy, bend] = view.lens;
+  const [dx, dy] = [x - cx, y - cy];
+  const s = 1 - bend * (dx * dx + dy * dy);
+  const [px, py] = [cx + s * dx, cy + s * dy];
+  const [a, b, c, d, e, f, g, h, i] = view.to_photo!;
+  const w = (d * h - e * g) * px + (b * g - a * h) * py + (a * e - b * d);
+  return [
+    ((e * i - f * h) * px + (c * h - b * i) * py + (b * f - c * e)) / w,
+    ((f * g - d * i) * px + (a * i - c * g) * py + (c * d - a * f)) / w,
+  ];
+}

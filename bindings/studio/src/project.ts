@@ -9,6 +9,13 @@ export interface Stroke {
   points: number[]; // x, y, x, y, ... in pixels of the photo
 }
 
+/** A lamp of the photo that was moved, resized or turned: a pixel on it, and its corners before and after. */
+export interface Reshaped {
+  at: [number, number];
+  before: number[];
+  after: number[];
+}
+
 export interface FileName {
   name: string;
   sha256: string;
@@ -42,6 +49,7 @@ export interface Project {
   room: FileName | null;
   strokes: Stroke[];
   removed: [number, number][];
+  reshaped: Reshaped[];
   grid: number[] | null; // x and y in the photo of the corners of a rectangle on the plane
   zones: [number, number, number, number][];
   surface: string | null;
@@ -169,7 +177,7 @@ function forgetOldest(except: string): void {
 /** Whether a project has any content worth keeping. */
 export function hasWork(project: Project): boolean {
   return (
-    project.strokes.length + project.removed.length + project.zones.length + (project.added ?? []).length > 0 ||
+    project.strokes.length + project.removed.length + (project.reshaped ?? []).length + project.zones.length + (project.added ?? []).length > 0 ||
     Boolean(project.grid)
   );
 }

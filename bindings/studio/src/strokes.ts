@@ -2,7 +2,7 @@
 
 import type { Kind, Stroke } from "./project";
 
-export type Tool = Kind | "remove" | "grid";
+export type Tool = Kind | "remove" | "grid" | "shape";
 
 export interface ToolLook {
   tool: Tool;
@@ -29,6 +29,13 @@ export const TOOLS: ToolLook[] = [
     tool: "grid",
     label: "Grid",
     hint: "drag its corners onto a rectangle of the ceiling, such as tiles",
+    colour: "#ffffff",
+    dashes: [],
+  },
+  {
+    tool: "shape",
+    label: "Shape",
+    hint: "click a lamp; drag it, its corners, its sides or its knob",
     colour: "#ffffff",
     dashes: [],
   },

@@ -16,11 +16,11 @@ import luxfer
 import numpy as np
 
 from ..cli.plane import Plane
-from . import grid, measure, mix, pictures
+from . import grid, measure, mix, pictures, reshape
 from .jobs import Latest
 from .live import strokes_of
 from .project import Project
-from .room import bounds, exposure_for, rectangle, texture_settings, work_plane
+from .room import MAX_TEXELS, bounds, exposure_for, rectangle, texture_settings, work_plane
 
 #: Settings of every relighting. They do not depend on time, so that a project always gives the same light.
 RELIGHT = {"target_error": 0.02, "paths": 1 << 18}
@@ -66,6 +66,9 @@ class Light:
         self.desks: dict[str, Any] = {}
         self.planned: dict[str, Any] = {}
         self.is_replaced = False  # whether the mask of the lights is not the library's own
+        self.is_edited = False  # whether the transfer has a photo with reshaped lamps
+        #: The distance from the plane, and its error, before lamps were reshaped: they change size, and the room does not.
+        self.kept_distance: tuple[float, float] | None = None
         self.is_dragged = False  # whether the camera of the photo comes from the dragged grid
         #: Directions of the room axes and focal length of the dragged grid.
         self.camera_by_grid: tuple[list[list[float]], float] | None = None
@@ -82,7 +85,8 @@ class Light:
         shot = [project["camera"], size]
         self.step("view", [], self.find_view)
         self.step("masks", project["strokes"], lambda: self.make_masks(project))
-        self.step("unwarp", [project["removed"], project["grid"]], lambda: self.unwarp(project))
+        edits = [project["removed"], project["grid"], project["reshaped"]]
+        self.step("unwarp", edits, lambda: self.unwarp(project, surface))
         self.step("emission", pattern, lambda: self.make_texture(project, surface))
         self.step("relight", [], lambda: self.relight(project))
         self.step("expose", [], lambda: self.choose_exposure(surface))
@@ -135,12 +139,20 @@ class Light:
         self.lights = self.transfer.image("lights-mask")
 
     def find_masks(self) -> None:
-        """Computes the masks. They always follow the camera that the library has found."""
+        """Computes the masks. They always follow the photo as it is, and the camera that the library has found."""
+        self.restore_photo()
         self.stage("view" if self.is_dragged else "features", "lights")
         self.is_dragged = self.is_replaced = False
 
-    def unwarp(self, project: Project) -> None:
+    def restore_photo(self) -> None:
+        """Takes the reshaped lamps back."""
+        if self.is_edited:
+            self.transfer.set_photo(self.photo)
+        self.is_edited, self.kept_distance = False, None
+
+    def unwarp(self, project: Project, surface: str) -> None:
         assert self.lights is not None
+        self.restore_photo()
         if (self.is_replaced and not project["removed"]) or self.is_dragged:
             self.find_masks()
         mask = self.lights.numpy()[..., 0]
@@ -152,10 +164,30 @@ class Light:
             self.is_replaced = True
         self.send_masks(mask)
         try:
-            self.stage("unwarp", "unwarp", **self.plane_of(project))
+            settings = self.plane_of(project)
+            self.stage("unwarp", "unwarp", **settings)
+            self.send("shapes", list=reshape.rectangles(mask, self.transfer.view, self.photo.size[:2]))
+            if project["reshaped"]:
+                self.change_lamps(project, mask, surface)
+                self.stage("unwarp", "unwarp", **settings)
         finally:
             self.send_view(project)
             self.send_warnings()
+
+    def change_lamps(self, project: Project, mask: np.ndarray[Any, Any], surface: str) -> None:
+        """Replaces photo and mask by ones with the reshaped lamps, at the scale that the lamps had before."""
+        self.transfer.set_scene(self.room, surface)
+        self.stage("emission", "emission", max_texels=MAX_TEXELS)
+        report = self.transfer.report
+        self.kept_distance = report.plane_distance, report.plane_distance_error
+        pixels, plane = self.photo.numpy(), self.transfer.image("plane-mask").numpy()[..., 0]
+        changed = reshape.apply(pixels, mask, plane, project["reshaped"], MAX_LAMP_DISTANCE * mask.shape[1])
+        if not (changed[1] > 0.5).any():
+            raise ValueError("no reshaped lamp lies in the photo: undo one")
+        self.transfer.set_photo(luxfer.Image(self.context, changed[0]))
+        self.transfer.use_mask("lights", luxfer.Image(self.context, changed[1]))
+        self.is_edited = self.is_replaced = True
+        self.send_masks(changed[1])
 
     def plane_of(self, project: Project) -> dict[str, Any]:
         """Replaces the camera by the camera of the dragged grid, and returns the settings of the stage "unwarp"."""
@@ -225,13 +257,17 @@ class Light:
     def make_texture(self, project: Project, surface: str) -> None:
         self.transfer.set_scene(self.room, surface)
         self.transfer.set_zones(np.array(project["zones"], np.float64).reshape(-1, 4))
-        self.stage("emission", "emission", **texture_settings(project))
+        self.stage("emission", "emission", **texture_settings(project, self.kept_distance))
         self.send_warnings()
         image = self.transfer.image("emission")
         width, height, _ = image.size
         small = pictures.reduced(image, 300_000)
         values = small.numpy()
-        report = self.transfer.report
+        report, known = self.transfer.report, self.photo.metadata
+        proposed = report.proposed_white, report.proposed_white_low, report.proposed_white_high
+        if self.is_edited and known.white_luminance > 0:  # a photo with reshaped lamps has no metadata
+            proposed = known.white_luminance, known.white_luminance_low, known.white_luminance_high
+        distance = self.kept_distance or (report.plane_distance, report.plane_distance_error)
         self.send(
             "texture",
             pictures.rgb(values, 1 / max(1e-9, float(values.max()))),
@@ -240,9 +276,9 @@ class Light:
             texels=[width, height],
             digest=pictures.digest(image),
             surface={"name": surface, **(rectangle(self.room, surface) or {})},
-            distance=report.plane_distance,
-            distance_error=report.plane_distance_error,
-            proposed_white=[report.proposed_white, report.proposed_white_low, report.proposed_white_high],
+            distance=distance[0],
+            distance_error=distance[1],
+            proposed_white=proposed,
         )
 
     def relight(self, project: Project) -> None:

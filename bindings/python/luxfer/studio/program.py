@@ -50,6 +50,18 @@ from luxfer.studio import grid
 plane = {{"plane_axes": grid.use(transfer, {axes}, {focal!r}, photo.size[:2])}}
 """
 
+RESHAPED = """
+# Lamps of the photo that were moved, resized or turned: a pixel on each, and its corners before and after.
+from luxfer.studio import reshape
+
+lights, mask_of_plane = (transfer.image(name).numpy()[..., 0] for name in ("lights-mask", "plane-mask"))
+pixels, lights = reshape.apply(
+    photo.numpy(), lights, mask_of_plane, {reshaped}, {max_distance} * lights.shape[1]
+)
+transfer.set_photo(pixels)
+transfer.use_mask("lights", lights)
+"""
+
 #: The lit room and its schedule, as they are and with lamps that are dimmed or added.
 PLAIN = 'transfer.scene("lit")', 'transfer.save_fixtures("luminaires.csv")'
 MIXED = "mix.apply(transfer, *lamps)", 'mix.write_schedule(Path("luminaires.csv"), transfer, *lamps)'
@@ -97,11 +109,13 @@ class Chosen(NamedTuple):
     exposure: float
     #: The camera of the photo by the dragged grid, if it was dragged.
     by_grid: PhotoCamera | None = None
+    #: Distance from the plane and its error before lamps were reshaped, if they were.
+    distance: tuple[float, float] | None = None
 
 
 def program(project: Project, chosen: Chosen) -> str:
     """Returns the text of the program."""
-    size, surface, camera, exposure, by_grid = chosen
+    size, surface, camera, exposure, by_grid, distance = chosen
     strokes = []
     for stroke in project["strokes"]:
         phase, positive = PHASES[stroke["kind"]]
@@ -117,6 +131,8 @@ def program(project: Project, chosen: Chosen) -> str:
         out += REMOVED.format(removed=project["removed"], max_distance=MAX_LAMP_DISTANCE)
     if by_grid:
         out += GRID.format(axes=by_grid[0], focal=by_grid[1])
+    if project["reshaped"]:
+        out += RESHAPED.format(reshaped=project["reshaped"], max_distance=MAX_LAMP_DISTANCE)
     is_plain = mix.is_plain(project["mix"], project["added"])
     if not is_plain:
         out += MIX_HEAD.format(mix=project["mix"], added=project["added"])
@@ -125,7 +141,7 @@ def program(project: Project, chosen: Chosen) -> str:
     return out + TAIL.format(
         zones=project["zones"],
         plane="rectify=plane, " if by_grid else "",
-        texture=texture_settings(project),
+        texture=texture_settings(project, distance),
         white=project["white"],
         relight=RELIGHT,
         lit=lit,

@@ -15,11 +15,14 @@ import numpy as np
 from . import grid, mix
 from .light import MAX_LAMP_DISTANCE, RELIGHT
 from .live import PHASES
-from .program import Chosen, PhotoCamera
+from .program import Chosen
 from .project import Project
+from .reshape import BEYOND
 from .room import texture_settings
 
 SOURCE = Path(__file__).with_name("program.c")
+#: Parts of the source that lie in files of their own, here and in C++.
+PARTS = ("mix", "reshape")
 #: Numbers of an array on one line.
 PER_LINE = 8
 
@@ -78,7 +81,7 @@ def strokes_of(project: Project) -> str:
 
 def data_of(project: Project, chosen: Chosen) -> str:
     """Returns the values of a project as C."""
-    size, surface, camera, exposure, by_grid = chosen
+    size, surface, camera, exposure, by_grid, _ = chosen
     room = project["room"]["name"] if project["room"] else ""
     out = [
         f"static const char *const photo_file = {quoted(project['photo']['name'])};\n",
@@ -90,8 +93,20 @@ def data_of(project: Project, chosen: Chosen) -> str:
     ]
     if project["removed"]:
         out += [
-            "\n/* A pixel on each lamp of the photo that was taken out; it may miss it by a share of the width. */\n",
+            "\n/* A pixel on each lamp of the photo that was taken out. */\n",
             array("double", "removed_lamp", [numbers(place) for place in project["removed"]], "{0, 0}", "[2]"),
+        ]
+    if project["reshaped"]:
+        rows = [numbers([*lamp["at"], *lamp["before"], *lamp["after"]]) for lamp in project["reshaped"]]
+        out += [
+            "\n/* Each lamp of the photo that was moved, resized or turned: a pixel on it, and the corners of its rectangle\n"
+            " * before and after. Its pixels may lie outside of the box of its corners by a share. */\n",
+            array("double", "reshaped_lamp", rows, "{0}", "[18]"),
+            f"static const double beyond_lamp = {BEYOND!r};\n",
+        ]
+    if project["removed"] or project["reshaped"]:
+        out += [
+            "/* A pixel may miss its lamp by this share of the width of the photo. */\n",
             f"static const double max_lamp_distance = {MAX_LAMP_DISTANCE!r};\n",
         ]
     if by_grid:
@@ -141,27 +156,32 @@ def assignments(place: str, settings: dict[str, Any]) -> str:
     return "".join(lines)
 
 
-def settings_of(project: Project) -> str:
+def settings_of(project: Project, distance: tuple[float, float] | None) -> str:
     """Returns the lines that set the settings of the transfer."""
-    texture = texture_settings(project)
+    texture = texture_settings(project, distance)
     pattern = texture.pop("pattern")
     return assignments("params", texture) + assignments("pattern", pattern) + assignments("relight", RELIGHT)
 
 
-def filled(source: Path, project: Project, by_grid: PhotoCamera | None, data: str) -> str:
+def filled(source: Path, project: Project, chosen: Chosen, data: str) -> str:
     """Returns the text of a source in C or C++ with the values of a project, and without the parts that the project
     does not need."""
     is_plain = mix.is_plain(project["mix"], project["added"])
-    is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain, "grid": bool(by_grid)}
-    is_needed["regions"] = is_needed["removed"] or is_needed["mix"]
+    is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain, "grid": bool(chosen.by_grid)}
+    is_needed["reshaped"] = bool(project["reshaped"])
+    is_needed["nearest"] = is_needed["removed"] or is_needed["reshaped"]
+    is_needed["regions"] = is_needed["nearest"] or is_needed["mix"]
     is_needed["pixels"] = is_needed["regions"] or is_needed["grid"]
     is_needed["read"] = is_needed["regions"]
     text = source.read_text(encoding="utf-8")
+    for part in PARTS:  # they lie in files of their own
+        beside = source.with_name(f"{source.stem}_{part}{source.suffix}").read_text(encoding="utf-8")
+        text = re.sub(mark(f"file {part}"), lambda _, beside=beside: beside, text)  # type: ignore[misc]
     for name, is_kept in is_needed.items():
         part = rf"{mark(f'start {name}')}(.*?){mark(f'end {name}')}"
         text = re.sub(part, r"\1" if is_kept else "", text, flags=re.DOTALL)
     render = (project["plan"] or {"render": {"target_error": project["noise"]}})["render"]
-    values = {"data": data, "settings": settings_of(project), "render": assignments("params", render)}
+    values = {"data": data, "settings": settings_of(project, chosen.distance), "render": assignments("params", render)}
     for name, lines in values.items():
         text = re.sub(mark(name), lambda _, lines=lines: lines, text)  # type: ignore[misc]
     return text
@@ -174,4 +194,4 @@ def mark(name: str) -> str:
 
 def program(project: Project, chosen: Chosen) -> str:
     """Returns the text of the program."""
-    return filled(SOURCE, project, chosen.by_grid, data_of(project, chosen))
+    return filled(SOURCE, project, chosen, data_of(project, chosen))

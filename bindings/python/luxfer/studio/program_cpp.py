@@ -14,6 +14,7 @@ from .live import PHASES
 from .program import Chosen, PhotoCamera
 from .program_c import filled, floats, numbers, one_float, quoted
 from .project import Project
+from .reshape import BEYOND
 
 SOURCE = Path(__file__).with_name("program.cpp")
 
@@ -44,9 +45,28 @@ def strokes_of(project: Project) -> str:
 
 def removed_of(project: Project) -> str:
     return (
-        "\n// A pixel on each lamp of the photo that was taken out; it may miss it by a share of the width.\n"
+        "\n// A pixel on each lamp of the photo that was taken out.\n"
         + places("std::array<double, 2>", "removed_lamps", project["removed"])
-        + f"constexpr double max_lamp_distance = {MAX_LAMP_DISTANCE!r};\n"
+    )
+
+
+def reshaped_of(project: Project) -> str:
+    values = [
+        f"{{{numbers(lamp['at'])}, {numbers(lamp['before'])}, {numbers(lamp['after'])}}}" for lamp in project["reshaped"]
+    ]
+    return (
+        "\n/// A lamp of the photo that was moved, resized or turned: a pixel on it, and the corners of its rectangle\n"
+        "/// before and after. Its pixels may lie outside of the box of its corners by a share.\n"
+        "struct Reshaped {\n    std::array<double, 2> at;\n    std::array<double, 8> before, after;\n};\n"
+        + rows("Reshaped", "reshaped_lamps", values)
+        + f"constexpr double beyond_lamp = {BEYOND!r};\n"
+    )
+
+
+def distance_of() -> str:
+    return (
+        "/// A pixel may miss its lamp by this share of the width of the photo.\n"
+        f"constexpr double max_lamp_distance = {MAX_LAMP_DISTANCE!r};\n"
     )
 
 
@@ -75,7 +95,7 @@ def mix_of(project: Project) -> str:
 
 def data_of(project: Project, chosen: Chosen) -> str:
     """Returns the values of a project as C++."""
-    size, surface, camera, exposure, by_grid = chosen
+    size, surface, camera, exposure, by_grid, _ = chosen
     room = project["room"]["name"] if project["room"] else ""
     is_plain = mix.is_plain(project["mix"], project["added"])
     return "".join(
@@ -87,6 +107,8 @@ def data_of(project: Project, chosen: Chosen) -> str:
             "\n// Places without lamps: u0, v0, u1, v1 in metres on the surface.\n",
             places("std::array<double, 4>", "zones", project["zones"]),
             removed_of(project) if project["removed"] else "",
+            reshaped_of(project) if project["reshaped"] else "",
+            distance_of() if project["removed"] or project["reshaped"] else "",
             grid_of(by_grid) if by_grid else "",
             "" if is_plain else mix_of(project),
             "\n// The picture.\n",
@@ -101,4 +123,4 @@ def data_of(project: Project, chosen: Chosen) -> str:
 
 def program(project: Project, chosen: Chosen) -> str:
     """Returns the text of the program."""
-    return filled(SOURCE, project, chosen.by_grid, data_of(project, chosen))
+    return filled(SOURCE, project, chosen, data_of(project, chosen))

@@ -12,6 +12,8 @@ from typing import Any
 FORMAT = 1
 KINDS = ("plane", "not-plane", "light", "not-light")
 SCALES = ("distance", "lamp", "spacing", "across")
+#: Minimum area in square pixels of a reshaped lamp. [convention]
+MIN_AREA = 1e-3
 #: The library's maximum of paths per pixel, up to which a plan may go.
 MAX_SAMPLES = 1 << 20
 
@@ -24,6 +26,7 @@ DEFAULTS: Project = {
     "room": None,  # {"name", "sha256"}; None: the generated room
     "strokes": [],  # {"kind", "radius", "points": [x, y, x, y, ...]} in pixels of the photo
     "removed": [],  # [x, y] in the photo, on each lamp that was taken out of the mask
+    "reshaped": [],  # {"at": [x, y] on a lamp, "before", "after": x, y of its corners on the plane} in the photo
     "grid": None,  # x, y in the photo of the corners of a rectangle on the plane, in turn; None: found by the library
     "zones": [],  # [u0, v0, u1, v1] in metres on the surface, on each lamp that was taken out of the room
     "surface": None,  # name of the surface that receives the lights; None: the likeliest ceiling
@@ -140,12 +143,28 @@ def factors(low: float, high: float) -> Callable[[Any, str], dict[str, float]]:
 
 
 PIXEL, METRE = number(-1e5, 1e5), number(-1e6, 1e6)
+
+
+def corners(value: Any, name: str) -> list[float]:
+    """A check for the corners of a rectangle seen in perspective, in turn."""
+    numbers: list[float] = many(PIXEL, 8)(value, name)
+    points = list(zip(numbers[::2], numbers[1::2]))
+    turns = []
+    for i in range(4):
+        (x0, y0), (x1, y1), (x2, y2) = (points[(i + k) % 4] for k in range(3))
+        turns.append((x1 - x0) * (y2 - y1) - (y1 - y0) * (x2 - x1))
+    if not (min(turns) > MIN_AREA or max(turns) < -MIN_AREA):
+        raise Invalid(f"{name} are not the corners of a rectangle seen in perspective")
+    return numbers
+
+
 FILE = record(name=text, sha256=text)
 FIELDS = {
     "photo": FILE,
     "room": optional(FILE),
     "strokes": many(record(kind=one_of(KINDS), radius=number(1e-3, 4096), points=many(PIXEL)), max_count=5000),
     "removed": many(many(PIXEL, 2), max_count=5000),
+    "reshaped": many(record(at=many(PIXEL, 2), before=corners, after=corners), max_count=1000),
     "grid": optional(many(PIXEL, 8)),
     "zones": many(many(METRE, 4), max_count=5000),
     "surface": optional(text),

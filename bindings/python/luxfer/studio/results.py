@@ -83,7 +83,7 @@ def _text(path: Path, text: str) -> None:
 def _program(path: Path, wanted: Wanted, light: Light, written: Callable[..., str]) -> None:
     surface = wanted.project["surface"] or light.surface
     camera = light.camera(wanted.project)
-    chosen = program.Chosen(wanted.size, surface, camera, light.exposure, light.camera_by_grid)
+    chosen = program.Chosen(wanted.size, surface, camera, light.exposure, light.camera_by_grid, light.kept_distance)
     _text(path, written(wanted.project, chosen))
 
 

@@ -37,9 +37,10 @@ def pattern_of(project: Project) -> dict[str, Any]:
     }
 
 
-def texture_settings(project: Project) -> dict[str, Any]:
-    """Returns the settings of a transfer's texture."""
-    return {"max_texels": MAX_TEXELS, "pattern": pattern_of(project), "white_luminance": project["white"]}
+def texture_settings(project: Project, distance: tuple[float, float] | None = None) -> dict[str, Any]:
+    """Returns the settings of a transfer's texture; `distance` is that from the plane, if lamps have been reshaped."""
+    kept = {} if distance is None else {"plane_distance": distance[0]}
+    return {"max_texels": MAX_TEXELS, **kept, "pattern": pattern_of(project), "white_luminance": project["white"]}
 
 
 def rectangle(room: luxfer.Scene, name: str) -> dict[str, Any] | None:
