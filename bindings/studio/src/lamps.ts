@@ -35,6 +35,7 @@ export class LampList {
   private texture: HTMLCanvasElement | null = null;
   private zones: Zone[] = [];
   private error = 0;
+  private others: { surface: string; lamps: number; flux: number }[] = []; // the lamps of other surfaces
   private fromTexture = new DOMMatrix(); // from shares of the texture to metres on the surface
   private mix: Record<string, number> = {};
   private added: Added[] = [];
@@ -55,6 +56,7 @@ export class LampList {
   setLamps(message: Message): void {
     this.lamps = message.list;
     this.error = message.error;
+    this.others = message.others;
     const [[a, c, e], [b, d, f]] = message.to_texture as number[][];
     this.fromTexture = new DOMMatrix([a, b, c, d, e, f]).inverse();
     this.draw();
@@ -121,6 +123,9 @@ export class LampList {
         this.dimmer(kind),
       ]),
       ...(this.zones.length ? [this.taken()] : []),
+      ...this.others.map(({ surface, lamps, flux }) =>
+        make("p", { class: "quiet" }, `On ${surface}: ${lamps} lamps, ${short(flux)} lm`),
+      ),
     );
   }
 

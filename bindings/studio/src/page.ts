@@ -19,6 +19,7 @@ import type { Shape } from "./shapes";
 import { TOOLS, type Tool } from "./strokes";
 import { Stylise } from "./stylise";
 import { shiftBy } from "./surface";
+import { workOn } from "./surfaces";
 import { Trade } from "./trade";
 
 const STAGES: Record<string, string> = {
@@ -42,7 +43,7 @@ const OF_STYLISE = new Set(["guides", "painting", ""]);
 const EMPTY_PHOTO = { strokes: [], removed: [], reshaped: [], grid: null };
 
 /** Entries of the project that belong to a room and mean nothing in another room. */
-const EMPTY_ROOM = { surface: null, ...PLAIN_LAMPS, lux_plane: { surface: null, height: 0.75 }, camera: null };
+const EMPTY_ROOM = { surface: null, ...PLAIN_LAMPS, others: [], lux_plane: { surface: null, height: 0.75 }, camera: null };
 
 export class Page {
   readonly photo = new PhotoView();
@@ -156,7 +157,11 @@ export class Page {
     this.pattern.onChange = (what, patch) => store.change(what, patch);
     this.roomTools.pattern = () => store.project.pattern;
     this.roomTools.onPattern = (what, pattern) => store.change(what, { pattern });
-    this.roomTools.onSurface = (surface) => store.change("surface", { surface, ...PLAIN_LAMPS });
+    this.roomTools.onSurface = (surface, before) => {
+      const isLit = store.project.others.some((other) => other.surface === surface);
+      const patch = isLit ? workOn(store.project, before, surface) : { surface, ...PLAIN_LAMPS };
+      store.change("surface", patch);
+    };
     this.roomTools.onRefused = notice;
     this.lux.onPlane = (plane) => store.change("plane", { lux_plane: plane });
     this.lux.onFactor = (factor) => {

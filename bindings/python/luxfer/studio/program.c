@@ -137,14 +137,14 @@ static int nearest_lit(const unsigned char *is_lit, int width, int height, doubl
 /* [start removed] */
 
 /* Takes lamps of the photo out of the mask of the lights. */
-static void take_out(luxfer_transfer *transfer) {
+static void take_out(luxfer_transfer **transfers) {
     luxfer_image *mask = NULL, *changed;
     uint32_t width, height, channels;
     float *values;
     unsigned char *is_lit;
     int *labels, i;
     size_t k;
-    check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_LIGHTS_MASK, &mask), "mask");
+    check(luxfer_transfer_get_image(transfers[0], LUXFER_TRANSFER_LIGHTS_MASK, &mask), "mask");
     values = pixels_of(mask, &width, &height, &channels);
     is_lit = (unsigned char *)allocate((size_t)width * height, 1);
     labels = (int *)allocate((size_t)width * height, sizeof(int));
@@ -157,7 +157,8 @@ static void take_out(luxfer_transfer *transfer) {
     for (i = 0; i < (int)(width * height); i++)
         if (labels[i]) values[i] = 0;
     changed = image_of(values, width, height, 1);
-    check(luxfer_transfer_use_mask(transfer, LUXFER_PHASE_LIGHTS, changed), "mask");
+    for (k = 0; k < placement_count; k++)
+        check(luxfer_transfer_use_mask(transfers[k], LUXFER_PHASE_LIGHTS, changed), "mask");
     free(labels), free(is_lit), free(values);
     luxfer_release(changed), luxfer_release(mask);
 }
@@ -279,82 +280,125 @@ static void render_room(luxfer_scene *lit) {
     luxfer_release(picture), luxfer_release(render);
 }
 
-/* Writes the lit room, the schedule of its lamps, and the picture. */
-static void write_results(luxfer_transfer *transfer, luxfer_scene *room) {
+/* Returns the lamps of a surface, with room for the added ones; the caller frees them. */
+static luxfer_fixture *lamps_of(luxfer_transfer *transfer, const placement *on, size_t *count) {
     luxfer_transfer_report report;
-    luxfer_scene *lit = NULL;
     luxfer_fixture *lamps;
-    size_t count, i;
-    check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_LIT, &lit), "lit room");
+    size_t i;
     check(luxfer_transfer_get_report(transfer, &report, sizeof report), "report");
-    count = report.fixtures;
-    lamps = (luxfer_fixture *)calloc(count + added_lamp_count + 1, sizeof(luxfer_fixture));
+    *count = report.fixtures;
+    lamps = (luxfer_fixture *)calloc(*count + on->added_count + 1, sizeof(luxfer_fixture));
     if (!lamps) exit(1);
-    for (i = 0; i < count; i++)
+    for (i = 0; i < *count; i++)
         check(luxfer_transfer_get_fixture(transfer, (uint32_t)i, &lamps[i], sizeof lamps[i]), "lamps");
-    /* [start plain] */
-    (void)room;
-    check(luxfer_transfer_save_fixtures(transfer, "luminaires.csv"), "luminaires.csv");
-    /* [end plain] */
+    return lamps;
+}
+
+/* Writes the lit room, the schedule of its lamps, and the picture. */
+static void write_results(luxfer_transfer **transfers, luxfer_scene *room) {
+    luxfer_scene *lit = NULL;
+    size_t count, i, k;
     /* [start mix] */
-    mix_lamps(room, lit, lamps, count);
-    count = mix_list(room, lamps, count);
-    write_schedule("luminaires.csv", lamps, count);
+    FILE *file = begin_schedule("luminaires.csv");
     /* [end mix] */
-    for (i = 0; i < count; i++)
-        printf("kind %u: %.0f lm, %.0f K at [%.2f, %.2f, %.2f]\n", (unsigned)lamps[i].kind, lamps[i].flux, lamps[i].cct,
-               lamps[i].position[0], lamps[i].position[1], lamps[i].position[2]);
+    check(luxfer_transfer_get_scene(transfers[0], LUXFER_SCENE_LIT, &lit), "lit room");
+    for (k = 0; k < placement_count; k++) {
+        const placement *on = &placements[k];
+        luxfer_fixture *lamps = lamps_of(transfers[k], on, &count);
+        /* [start plain] */
+        (void)room;
+        check(luxfer_transfer_save_fixtures(transfers[k], "luminaires.csv"), "luminaires.csv");
+        /* [end plain] */
+        /* [start mix] */
+        mix_lamps(room, lit, on, lamps, count);
+        count = mix_list(room, on, lamps, count);
+        write_lamps(file, on, lamps, count);
+        /* [end mix] */
+        for (i = 0; i < count; i++)
+            printf("kind %u: %.0f lm, %.0f K at [%.2f, %.2f, %.2f]\n", (unsigned)lamps[i].kind, lamps[i].flux,
+                   lamps[i].cct, lamps[i].position[0], lamps[i].position[1], lamps[i].position[2]);
+        free(lamps);
+    }
+    /* [start mix] */
+    fclose(file);
+    /* [end mix] */
     check(luxfer_scene_export(lit, "lit.glb"), "lit.glb");
     render_room(lit);
-    free(lamps);
     luxfer_release(lit);
 }
 
-/* Makes the texture of the surface from the photo, and solves for its strength. */
-static void transfer_light(luxfer_transfer *transfer, luxfer_image *photo) {
+/* Settings of a transfer. */
+typedef struct settings {
     luxfer_transfer_params params;
     luxfer_pattern_params pattern;
     luxfer_relight_params relight;
-    /* [start grid] */
     luxfer_rectify_params plane;
-    /* [end grid] */
-    check(luxfer_transfer_params_init(&params, sizeof params), "settings");
-    check(luxfer_pattern_params_init(&pattern, sizeof pattern), "settings");
-    check(luxfer_relight_params_init(&relight, sizeof relight), "settings");
+} settings;
+
+static void fill_settings(settings *of, const placement *on) {
+    check(luxfer_transfer_params_init(&of->params, sizeof of->params), "settings");
+    check(luxfer_pattern_params_init(&of->pattern, sizeof of->pattern), "settings");
+    check(luxfer_relight_params_init(&of->relight, sizeof of->relight), "settings");
+    of->pattern.scale = on->scale;
+    of->pattern.length = on->length;
+    of->pattern.rotation = on->rotation;
+    memcpy(of->pattern.offset, on->offset, sizeof on->offset);
+    of->pattern.margin = on->margin;
     /* [settings] */
-    params.pattern = &pattern;
-    params.relight = &relight;
+    of->params.pattern = &of->pattern;
+    of->params.relight = &of->relight;
+}
+
+/* Makes the texture of each surface from the photo, and solves for the strength of all. */
+static void transfer_light(luxfer_transfer **transfers, luxfer_image *photo) {
+    settings all[placement_count];
+    const luxfer_transfer_params *params[placement_count];
+    luxfer_job *job = NULL;
+    size_t k;
     (void)photo;
-    run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_LIGHTS, NULL, "masks");
+    for (k = 0; k < placement_count; k++) {
+        fill_settings(&all[k], &placements[k]);
+        params[k] = &all[k].params;
+        run(transfers[k], LUXFER_STAGE_VIEW, LUXFER_STAGE_LIGHTS, NULL, "masks");
+        check(luxfer_transfer_set_zones(transfers[k], zones[placements[k].first_zone], placements[k].zone_count), "zones");
+    }
     /* [start removed] */
-    take_out(transfer);
+    take_out(transfers);
     /* [end removed] */
     /* [start grid] */
-    use_grid(transfer, photo, &plane);
-    params.rectify = &plane;
+    for (k = 0; k < placement_count; k++) {
+        use_grid(transfers[k], photo, &all[k].plane);
+        all[k].params.rectify = &all[k].plane;
+    }
     /* [end grid] */
     /* [start reshaped] */
-    reshape_lamps(transfer, photo);
+    reshape_lamps(transfers, photo);
     /* [end reshaped] */
-    check(luxfer_transfer_set_zones(transfer, zones[0], zone_count), "zones");
-    run(transfer, LUXFER_STAGE_UNWARP, LUXFER_STAGE_RELIGHT, &params, "light");
+    for (k = 0; k < placement_count; k++) run(transfers[k], LUXFER_STAGE_UNWARP, LUXFER_STAGE_UNWARP, params[k], "plane");
+    check(luxfer_transfer_start_all(context, transfers, placement_count, LUXFER_STAGE_EMISSION, LUXFER_STAGE_RELIGHT,
+                                    params, &job), "light");
+    finish(job, "light");
 }
 
 int main(int argc, char **argv) {
     const char *photo_path = argc > 1 ? argv[1] : photo_file, *room_path = argc > 2 ? argv[2] : room_file;
-    luxfer_transfer *transfer = NULL;
+    luxfer_transfer *transfers[placement_count];
     luxfer_image *photo = NULL;
     luxfer_scene *room = NULL;
+    size_t k;
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_image_load(context, photo_path, LUXFER_COLOUR_SRGB, &photo), photo_path);
     if (*room_path) check(luxfer_scene_load(context, room_path, NULL, &room), room_path);
     else check(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &room), "room"); /* the generated room */
-    check(luxfer_transfer_create(context, &transfer), "transfer");
-    check(luxfer_transfer_set_photo(transfer, photo), "photo");
-    check(luxfer_transfer_set_scene(transfer, room, surface_name), "surface");
-    set_strokes(transfer, photo);
-    transfer_light(transfer, photo);
-    write_results(transfer, room);
-    luxfer_release(transfer), luxfer_release(room), luxfer_release(photo), luxfer_release(context);
+    for (k = 0; k < placement_count; k++) {
+        check(luxfer_transfer_create(context, &transfers[k]), "transfer");
+        check(luxfer_transfer_set_photo(transfers[k], photo), "photo");
+        check(luxfer_transfer_set_scene(transfers[k], room, placements[k].surface), "surface");
+        set_strokes(transfers[k], photo);
+    }
+    transfer_light(transfers, photo);
+    write_results(transfers, room);
+    for (k = 0; k < placement_count; k++) luxfer_release(transfers[k]);
+    luxfer_release(room), luxfer_release(photo), luxfer_release(context);
     return 0;
 }

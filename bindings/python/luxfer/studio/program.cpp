@@ -16,6 +16,8 @@
 // [end pixels]
 #include <cstdio>
 // [start mix]
+#include <fstream>
+#include <iomanip>
 #include <optional>
 #include <set>
 // [end mix]
@@ -86,8 +88,8 @@ int nearest_lit(const std::vector<bool> &is_lit, int width, int height, const st
 // [end nearest]
 // [start removed]
 /// Takes lamps of the photo out of the mask of the lights.
-void take_out(const luxfer::Transfer &transfer) {
-    const auto mask = transfer.image(LUXFER_TRANSFER_LIGHTS_MASK);
+void take_out(const std::vector<luxfer::Transfer> &transfers) {
+    const luxfer::Image mask = transfers[0].image(LUXFER_TRANSFER_LIGHTS_MASK);
     const auto size = mask.size();
     auto values = mask.samples();
     Labels labels = {int(size.width), int(size.height), std::vector<int>(values.size())};
@@ -103,7 +105,9 @@ void take_out(const luxfer::Transfer &transfer) {
         if (labels.at[i] != 0)
             values[i] = 0;
     const luxfer::ConstImageView view(values, size.width, size.height, 1);
-    transfer.use(LUXFER_PHASE_LIGHTS, luxfer::Image::create(transfer.context(), view));
+    const luxfer::Image changed = luxfer::Image::create(mask.context(), view);
+    for (const auto &transfer : transfers)
+        transfer.use(LUXFER_PHASE_LIGHTS, changed);
 }
 
 // [end removed]
@@ -204,49 +208,80 @@ void render_room(const luxfer::Scene &lit) {
     render.image(LUXFER_RENDER_PREVIEW).save("render.png", exposure);
 }
 
-/// Makes the texture of the surface from the photo, and solves for its strength.
-void transfer_light(const luxfer::Transfer &transfer, [[maybe_unused]] const luxfer::Image &photo) {
-    luxfer::TransferParams params;
+/// Settings of a transfer.
+struct Settings {
     luxfer::PatternParams pattern;
     luxfer::RelightParams relight;
-    params.pattern = &pattern;
-    params.relight = &relight;
+    luxfer::RectifyParams plane;
+};
+
+/// Returns the settings of the transfer for a surface; they lead to `parts`.
+luxfer::TransferParams params_of(const Placement &on, Settings &parts) {
+    luxfer::TransferParams params;
+    parts.pattern.scale = on.scale;
+    parts.pattern.length = on.length;
+    parts.pattern.rotation = on.rotation;
+    parts.pattern.offset[0] = on.offset[0];
+    parts.pattern.offset[1] = on.offset[1];
+    parts.pattern.margin = on.margin;
     // [settings]
-    transfer.start(LUXFER_STAGE_VIEW, LUXFER_STAGE_LIGHTS).wait();
+    params.pattern = &parts.pattern;
+    params.relight = &parts.relight;
+    return params;
+}
+
+/// Makes the texture of each surface from the photo, and solves for the strength of all.
+void transfer_light(const std::vector<luxfer::Transfer> &transfers, [[maybe_unused]] const luxfer::Image &photo) {
+    std::vector<Settings> parts(placements.size());
+    std::vector<luxfer::TransferParams> params;
+    for (std::size_t k = 0; k < placements.size(); k++) {
+        params.push_back(params_of(placements[k], parts[k]));
+        transfers[k].start(LUXFER_STAGE_VIEW, LUXFER_STAGE_LIGHTS).wait();
+        std::vector<double> corners;
+        for (const auto &zone : placements[k].zones)
+            corners.insert(corners.end(), zone.begin(), zone.end());
+        transfers[k].set_zones(corners);
+    }
     // [start removed]
-    take_out(transfer);
+    take_out(transfers);
     // [end removed]
     // [start grid]
-    const auto plane = use_grid(transfer, photo);
-    params.rectify = &plane;
+    for (std::size_t k = 0; k < placements.size(); k++) {
+        parts[k].plane = use_grid(transfers[k], photo);
+        params[k].rectify = &parts[k].plane;
+    }
     // [end grid]
     // [start reshaped]
-    reshape_lamps(transfer, photo);
+    reshape_lamps(transfers, photo);
     // [end reshaped]
-    std::vector<double> corners;
-    for (const auto &zone : zones)
-        corners.insert(corners.end(), zone.begin(), zone.end());
-    transfer.set_zones(corners);
-    transfer.start(LUXFER_STAGE_UNWARP, LUXFER_STAGE_RELIGHT, params).wait();
+    for (std::size_t k = 0; k < placements.size(); k++)
+        transfers[k].start(LUXFER_STAGE_UNWARP, LUXFER_STAGE_UNWARP, params[k]).wait();
+    const luxfer::Context &context = photo.context();
+    luxfer::Transfer::start_all(context, transfers, LUXFER_STAGE_EMISSION, LUXFER_STAGE_RELIGHT, params).wait();
 }
 
 /// Writes the lit room, the schedule of its lamps, and the picture.
-void write_results(const luxfer::Transfer &transfer, [[maybe_unused]] const luxfer::Scene &room) {
-    const auto lit = transfer.scene();
-    std::vector<luxfer_fixture> lamps;
-    for (std::uint32_t i = 0, count = transfer.report().fixtures; i < count; i++)
-        lamps.push_back(transfer.fixture(i));
-    // [start plain]
-    transfer.save_fixtures("luminaires.csv");
-    // [end plain]
+void write_results(const std::vector<luxfer::Transfer> &transfers, [[maybe_unused]] const luxfer::Scene &room) {
+    const luxfer::Scene lit = transfers[0].scene();
     // [start mix]
-    mix_lamps(room, lit, lamps);
-    mix_list(room, lamps);
-    write_schedule("luminaires.csv", lamps);
+    auto schedule = begin_schedule("luminaires.csv");
     // [end mix]
-    for (const auto &lamp : lamps)
-        std::printf("kind %u: %.0f lm, %.0f K at [%.2f, %.2f, %.2f]\n", unsigned(lamp.kind), lamp.flux, lamp.cct,
-                    double(lamp.position[0]), double(lamp.position[1]), double(lamp.position[2]));
+    for (std::size_t k = 0; k < placements.size(); k++) {
+        std::vector<luxfer_fixture> lamps;
+        for (std::uint32_t i = 0, count = transfers[k].report().fixtures; i < count; i++)
+            lamps.push_back(transfers[k].fixture(i));
+        // [start plain]
+        transfers[k].save_fixtures("luminaires.csv");
+        // [end plain]
+        // [start mix]
+        mix_lamps(room, lit, placements[k], lamps);
+        mix_list(room, placements[k], lamps);
+        write_lamps(schedule, placements[k], lamps);
+        // [end mix]
+        for (const auto &lamp : lamps)
+            std::printf("kind %u: %.0f lm, %.0f K at [%.2f, %.2f, %.2f]\n", unsigned(lamp.kind), lamp.flux, lamp.cct,
+                        double(lamp.position[0]), double(lamp.position[1]), double(lamp.position[2]));
+    }
     lit.save("lit.glb");
     render_room(lit);
 }
@@ -260,12 +295,15 @@ int main(int argc, char **argv) {
         const auto photo = luxfer::Image::load(context, photo_path);
         const auto room = room_path.empty() ? luxfer::Scene::demo(context, LUXFER_DEMO_TARGET_ROOM) // the generated room
                                             : luxfer::Scene::load(context, room_path);
-        const auto transfer = luxfer::Transfer::create(context);
-        transfer.set_photo(photo);
-        transfer.set_scene(room, surface_name);
-        transfer.set_strokes(strokes_on(photo));
-        transfer_light(transfer, photo);
-        write_results(transfer, room);
+        std::vector<luxfer::Transfer> transfers;
+        for (const Placement &on : placements) {
+            transfers.push_back(luxfer::Transfer::create(context));
+            transfers.back().set_photo(photo);
+            transfers.back().set_scene(room, on.surface);
+            transfers.back().set_strokes(strokes_on(photo));
+        }
+        transfer_light(transfers, photo);
+        write_results(transfers, room);
         return 0;
     } catch (const std::exception &error) {
         std::fprintf(stderr, "%s\n", error.what());

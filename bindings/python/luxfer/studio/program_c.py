@@ -12,13 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from . import grid, mix
-from .light import MAX_LAMP_DISTANCE, RELIGHT
+from . import grid
+from .light import RELIGHT
+from .layout import Layout
 from .live import PHASES
-from .program import Chosen
+from .program import Chosen, is_plain_room
 from .project import Project
 from .reshape import BEYOND
-from .room import texture_settings
+from .shot import MAX_LAMP_DISTANCE
+from .room import pattern_of, texture_settings
 
 SOURCE = Path(__file__).with_name("program.c")
 #: Parts of the source that lie in files of their own, here and in C++.
@@ -51,13 +53,14 @@ def one_float(value: float) -> str:
 
 
 def array(kind: str, name: str, rows: list[str], unused: str, width: str = "") -> str:
-    """Returns the array NAMEs, and NAME_count, the number of its rows. An array in C has at least one row, so without
-    rows it has `unused`."""
+    """Returns the array NAMEs. An array in C has at least one row, so without rows it has `unused`."""
     body = ",\n    ".join(rows or [unused])
-    return (
-        f"static const {kind} {name}s[]{width} = {{\n    {body}\n}};\n"
-        f"static const size_t {name}_count = {len(rows)};\n"
-    )
+    return f"static const {kind} {name}s[]{width} = {{\n    {body}\n}};\n"
+
+
+def counted(kind: str, name: str, rows: list[str], unused: str, width: str = "") -> str:
+    """Returns the array NAMEs, and NAME_count, the number of its rows."""
+    return f"{array(kind, name, rows, unused, width)}static const size_t {name}_count = {len(rows)};\n"
 
 
 def strokes_of(project: Project) -> str:
@@ -75,33 +78,71 @@ def strokes_of(project: Project) -> str:
         " * it, its radius, its first point and the number of its points. */\n"
         f"static const float points[] = {floats(points or [0.0, 0.0])};\n"
         "typedef struct stroke {\n    luxfer_phase phase;\n    int32_t positive;\n    float radius;\n"
-        "    size_t first, count;\n} stroke;\n" + array("stroke", "stroke", rows, "{0, 0, 0.0f, 0, 0}")
+        "    size_t first, count;\n} stroke;\n" + counted("stroke", "stroke", rows, "{0, 0, 0.0f, 0, 0}")
+    )
+
+
+def placements_of(layouts: list[Layout]) -> str:
+    """Returns the surfaces that receive lamps, and the places without lamps on them."""
+    rows, first = [], [0, 0, 0]
+    for one in layouts:
+        pattern = pattern_of(one.pattern)
+        counts = [len(one.zones), len(one.mix), len(one.added)]
+        shares = ", ".join(f"{begin}, {count}" for begin, count in zip(first, counts))
+        rows.append(
+            f"{{{quoted(one.surface)}, LUXFER_PATTERN_{pattern['scale'].upper()}, {pattern['length']!r}, "
+            f"{pattern['rotation']!r}, {numbers(pattern['offset'])}, {pattern['margin']!r}, {shares}}}"
+        )
+        first = [begin + count for begin, count in zip(first, counts)]
+    return (
+        "\n/* Each surface that receives lamps, and the pattern on it; then the first of its places without lamps, of its\n"
+        " * dimmed kinds and of its added lamps, and their numbers. */\n"
+        "typedef struct placement {\n    const char *surface;\n    luxfer_pattern_scale scale;\n"
+        "    double length, rotation, offset[2], margin;\n"
+        "    size_t first_zone, zone_count, first_dimmer, dimmer_count, first_added, added_count;\n} placement;\n"
+        f"enum {{ placement_count = {len(layouts)} }};\n"
+        + array("placement", "placement", rows, "")
+        + "\n/* Places without lamps: u0, v0, u1, v1 in metres on the surface. */\n"
+        + array("double", "zone", [numbers(zone) for one in layouts for zone in one.zones], "{0, 0, 0, 0}", "[4]")
+    )
+
+
+def mix_of(layouts: list[Layout]) -> str:
+    """Returns the dimmed kinds and the added lamps of all surfaces; nothing if the library makes all lamps."""
+    if is_plain_room(layouts):
+        return ""
+    dimmed = [f"{{{int(kind)}u, {factor!r}}}" for one in layouts for kind, factor in one.mix.items()]
+    added = [numbers(lamp) for one in layouts for lamp in one.added]
+    return (
+        "\n/* The factor of each kind of lamp, and added lamps: kind, u and v in metres on the surface. */\n"
+        "typedef struct dimmer {\n    uint32_t kind;\n    double factor;\n} dimmer;\n"
+        + array("dimmer", "dimmer", dimmed, "{0u, 0.0}")
+        + array("double", "added_lamp", added, "{0, 0, 0}", "[3]")
     )
 
 
 def data_of(project: Project, chosen: Chosen) -> str:
     """Returns the values of a project as C."""
-    size, surface, camera, exposure, by_grid, _ = chosen
+    size, layouts, camera, exposure, by_grid, _ = chosen
     room = project["room"]["name"] if project["room"] else ""
     out = [
         f"static const char *const photo_file = {quoted(project['photo']['name'])};\n",
-        f"static const char *const room_file = {quoted(room)}; /* empty: the generated room */\n",
-        f"static const char *const surface_name = {quoted(surface)};\n\n",
+        f"static const char *const room_file = {quoted(room)}; /* empty: the generated room */\n\n",
         strokes_of(project),
-        "\n/* Places without lamps: u0, v0, u1, v1 in metres on the surface. */\n",
-        array("double", "zone", [numbers(zone) for zone in project["zones"]], "{0, 0, 0, 0}", "[4]"),
+        placements_of(layouts),
+        mix_of(layouts),
     ]
     if project["removed"]:
         out += [
             "\n/* A pixel on each lamp of the photo that was taken out. */\n",
-            array("double", "removed_lamp", [numbers(place) for place in project["removed"]], "{0, 0}", "[2]"),
+            counted("double", "removed_lamp", [numbers(place) for place in project["removed"]], "{0, 0}", "[2]"),
         ]
     if project["reshaped"]:
         rows = [numbers([*lamp["at"], *lamp["before"], *lamp["after"]]) for lamp in project["reshaped"]]
         out += [
             "\n/* Each lamp of the photo that was moved, resized or turned: a pixel on it, and the corners of its rectangle\n"
             " * before and after. Its pixels may lie outside of the box of its corners by a share. */\n",
-            array("double", "reshaped_lamp", rows, "{0}", "[18]"),
+            counted("double", "reshaped_lamp", rows, "{0}", "[18]"),
             f"static const double beyond_lamp = {BEYOND!r};\n",
         ]
     if project["removed"] or project["reshaped"]:
@@ -119,16 +160,6 @@ def data_of(project: Project, chosen: Chosen) -> str:
             f"static const uint32_t cell = {grid.CELL}, min_cells = {grid.MIN_CELLS}, max_cells = {grid.MAX_CELLS};\n",
             f"static const double half_width = {grid.HALF_WIDTH}, half_length = {grid.HALF_LENGTH};\n",
             f"static const double contrast = {grid.CONTRAST};\n",
-        ]
-    if mix.is_plain(project["mix"], project["added"]):
-        out.append("static const size_t added_lamp_count = 0;\n")
-    else:
-        dimmed = [f"{{{int(kind)}u, {factor!r}}}" for kind, factor in project["mix"].items()]
-        out += [
-            "\n/* The factor of each kind of lamp, and added lamps: kind, u and v in metres on the surface. */\n",
-            "typedef struct dimmer {\n    uint32_t kind;\n    double factor;\n} dimmer;\n",
-            array("dimmer", "dimmer", dimmed, "{0u, 0.0}"),
-            array("double", "added_lamp", [numbers(lamp) for lamp in project["added"]], "{0, 0, 0}", "[3]"),
         ]
     out += [
         "\n/* The picture. */\n",
@@ -156,17 +187,16 @@ def assignments(place: str, settings: dict[str, Any]) -> str:
     return "".join(lines)
 
 
-def settings_of(project: Project, distance: tuple[float, float] | None) -> str:
-    """Returns the lines that set the settings of the transfer."""
+def settings_of(project: Project, distance: tuple[float, float] | None, places: tuple[str, str]) -> str:
+    """Returns the lines that set the settings of each transfer, in two structs."""
     texture = texture_settings(project, distance)
-    pattern = texture.pop("pattern")
-    return assignments("params", texture) + assignments("pattern", pattern) + assignments("relight", RELIGHT)
+    return assignments(places[0], texture) + assignments(places[1], RELIGHT)
 
 
-def filled(source: Path, project: Project, chosen: Chosen, data: str) -> str:
+def filled(source: Path, project: Project, chosen: Chosen, data: str, places: tuple[str, str]) -> str:
     """Returns the text of a source in C or C++ with the values of a project, and without the parts that the project
     does not need."""
-    is_plain = mix.is_plain(project["mix"], project["added"])
+    is_plain = is_plain_room(chosen.layouts)
     is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain, "grid": bool(chosen.by_grid)}
     is_needed["reshaped"] = bool(project["reshaped"])
     is_needed["nearest"] = is_needed["removed"] or is_needed["reshaped"]
@@ -181,7 +211,7 @@ def filled(source: Path, project: Project, chosen: Chosen, data: str) -> str:
         part = rf"{mark(f'start {name}')}(.*?){mark(f'end {name}')}"
         text = re.sub(part, r"\1" if is_kept else "", text, flags=re.DOTALL)
     render = (project["plan"] or {"render": {"target_error": project["noise"]}})["render"]
-    values = {"data": data, "settings": settings_of(project, chosen.distance), "render": assignments("params", render)}
+    values = {"data": data, "settings": settings_of(project, chosen.distance, places), "render": assignments("params", render)}
     for name, lines in values.items():
         text = re.sub(mark(name), lambda _, lines=lines: lines, text)  # type: ignore[misc]
     return text
@@ -194,4 +224,4 @@ def mark(name: str) -> str:
 
 def program(project: Project, chosen: Chosen) -> str:
     """Returns the text of the program."""
-    return filled(SOURCE, project, chosen, data_of(project, chosen))
+    return filled(SOURCE, project, chosen, data_of(project, chosen), ("of->params", "of->relight"))

@@ -8,11 +8,19 @@ typedef struct texture {
     double map[2][3]; /* u and v in metres, and 1, to shares of width and height */
 } texture;
 
-static double factor_of(uint32_t kind) {
+static double factor_of(const placement *on, uint32_t kind) {
     size_t i;
-    for (i = 0; i < dimmer_count; i++)
+    for (i = on->first_dimmer; i < on->first_dimmer + on->dimmer_count; i++)
         if (dimmers[i].kind == kind) return dimmers[i].factor;
     return 1;
+}
+
+/* Whether all lamps of a surface are as the transfer has made them. */
+static int is_plain(const placement *on) {
+    size_t i;
+    for (i = on->first_dimmer; i < on->first_dimmer + on->dimmer_count; i++)
+        if (dimmers[i].factor != 1) return 0;
+    return on->added_count == 0;
 }
 
 /* Returns u and v in metres of a position on a surface. */
@@ -23,6 +31,45 @@ static void on_surface(const luxfer_surface *surface, const double position[3], 
         uv[0] += (position[k] - surface->origin[k]) * surface->u_axis[k];
         uv[1] += (position[k] - surface->origin[k]) * surface->v_axis[k];
     }
+}
+
+/* Returns the largest distance in metres of the bounds of a mesh from those of a surface. */
+static double misfit(luxfer_scene *lit, uint32_t mesh, const luxfer_surface *surface) {
+    double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, out = 0;
+    luxfer_mesh_info info;
+    float *positions;
+    size_t i;
+    int k;
+    check(luxfer_scene_get_mesh(lit, mesh, &info, sizeof info), "mesh");
+    positions = (float *)allocate(3 * (size_t)info.vertex_count, sizeof(float));
+    check(luxfer_scene_read_vertices(lit, mesh, LUXFER_VERTEX_POSITION, positions, (size_t)info.vertex_count), "mesh");
+    for (i = 0; i < (size_t)info.vertex_count; i++) {
+        const double position[3] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
+        double uv[2], away = 0;
+        on_surface(surface, position, uv);
+        for (k = 0; k < 3; k++) away += (position[k] - surface->origin[k]) * surface->normal[k];
+        for (k = 0; k < 2; k++) low[k] = fmin(low[k], uv[k]), high[k] = fmax(high[k], uv[k]);
+        out = fmax(out, fabs(away));
+    }
+    for (k = 0; k < 2; k++) out = fmax(out, fmax(fabs(low[k]), fabs(high[k] - surface->size[k])));
+    free(positions);
+    return out;
+}
+
+/* Returns the mesh with the lamps of a surface. A transfer adds the meshes of its surfaces last; that of a surface fills
+ * its rectangle best. */
+static uint32_t mesh_of(luxfer_scene *lit, const luxfer_surface *surface) {
+    luxfer_scene_counts counts;
+    uint32_t mesh, best = 0;
+    double smallest = INFINITY;
+    check(luxfer_scene_get_counts(lit, &counts, sizeof counts), "room");
+    for (mesh = counts.meshes - placement_count; mesh < counts.meshes; mesh++) {
+        const double distance = misfit(lit, mesh, surface);
+        if (distance >= smallest) continue;
+        smallest = distance;
+        best = mesh;
+    }
+    return best;
 }
 
 /* Fits the map from the surface to the texture to the vertices of the mesh that the transfer has added. */
@@ -124,7 +171,7 @@ static void copy_lamp(const luxfer_fixture *lamp, texture *t, const double place
 }
 
 /* Gives each kind of lamp its share of the light in the texture, and adds lamps to it. */
-static void mix_texture(texture *t, const luxfer_fixture *lamps, size_t lamp_count) {
+static void mix_texture(texture *t, const placement *on, const luxfer_fixture *lamps, size_t lamp_count) {
     const int pixels = t->width * t->height;
     unsigned char *is_lit = (unsigned char *)allocate((size_t)pixels, 1), *is_of_lamp;
     float *factors;
@@ -140,37 +187,38 @@ static void mix_texture(texture *t, const luxfer_fixture *lamps, size_t lamp_cou
     for (k = 0; k < lamp_count; k++) {
         regions_of(&lamps[k], t, is_of_lamp);
         for (i = 1; i <= t->count; i++)
-            if (is_of_lamp[i]) factors[i] = (float)factor_of(lamps[k].kind);
+            if (is_of_lamp[i]) factors[i] = (float)factor_of(on, lamps[k].kind);
     }
     for (i = 0; i < pixels; i++)
         for (c = 0; c < 3; c++) t->values[3 * i + c] *= factors[t->labels[i]];
-    for (k = 0; k < added_lamp_count; k++) {
+    for (k = on->first_added; k < on->first_added + on->added_count; k++) {
         const luxfer_fixture *model = model_of(lamps, lamp_count, (uint32_t)added_lamps[k][0]);
         if (model) copy_lamp(model, t, added_lamps[k], is_of_lamp);
     }
     free(factors), free(is_of_lamp), free(is_lit);
 }
 
-/* Changes the lamps of the lit room. */
-static void mix_lamps(luxfer_scene *room, luxfer_scene *lit, const luxfer_fixture *lamps, size_t lamp_count) {
-    luxfer_scene_counts counts;
+/* Changes the lamps of a surface in the lit room. */
+static void mix_lamps(luxfer_scene *room, luxfer_scene *lit, const placement *on, const luxfer_fixture *lamps,
+                      size_t lamp_count) {
     luxfer_mesh_info info;
     luxfer_texture_use use;
     luxfer_image *image = NULL, *changed;
-    uint32_t width, height, channels, index;
+    uint32_t width, height, channels, index, mesh;
     texture t;
+    if (is_plain(on)) return;
     memset(&t, 0, sizeof t);
-    check(luxfer_scene_get_counts(lit, &counts, sizeof counts), "room");
-    check(luxfer_scene_get_mesh(lit, counts.meshes - 1, &info, sizeof info), "lamps");
+    check(luxfer_scene_find_surface(room, on->surface, &t.surface, sizeof t.surface), "surface");
+    mesh = mesh_of(lit, &t.surface);
+    check(luxfer_scene_get_mesh(lit, mesh, &info, sizeof info), "lamps");
     check(luxfer_scene_get_material_texture(lit, info.material, LUXFER_TEXTURE_EMISSION, &use, sizeof use), "lamps");
     check(luxfer_scene_get_texture(lit, use.texture, &image), "lamps");
-    check(luxfer_scene_find_surface(room, surface_name, &t.surface, sizeof t.surface), "surface");
     t.values = pixels_of(image, &width, &height, &channels);
     t.width = (int)width;
     t.height = (int)height;
     t.labels = (int *)allocate((size_t)width * height, sizeof(int));
-    fit_map(lit, counts.meshes - 1, use.uv_set, &t);
-    mix_texture(&t, lamps, lamp_count);
+    fit_map(lit, mesh, use.uv_set, &t);
+    mix_texture(&t, on, lamps, lamp_count);
     changed = image_of(t.values, width, height, channels);
     check(luxfer_scene_add_texture(lit, changed, use.wrap_u, use.wrap_v, &index), "lamps");
     check(luxfer_scene_set_material_texture(lit, info.material, LUXFER_TEXTURE_EMISSION, index, use.uv_set,
@@ -180,12 +228,12 @@ static void mix_lamps(luxfer_scene *room, luxfer_scene *lit, const luxfer_fixtur
 }
 
 /* Appends the added lamps to the list of lamps, and gives each lamp its share of the light. */
-static size_t mix_list(luxfer_scene *room, luxfer_fixture *lamps, size_t count) {
+static size_t mix_list(luxfer_scene *room, const placement *on, luxfer_fixture *lamps, size_t count) {
     luxfer_surface surface;
     size_t all = count, i;
     int k;
-    check(luxfer_scene_find_surface(room, surface_name, &surface, sizeof surface), "surface");
-    for (i = 0; i < added_lamp_count; i++) {
+    check(luxfer_scene_find_surface(room, on->surface, &surface, sizeof surface), "surface");
+    for (i = on->first_added; i < on->first_added + on->added_count; i++) {
         const luxfer_fixture *model = model_of(lamps, count, (uint32_t)added_lamps[i][0]);
         double step[2];
         if (!model) continue;
@@ -196,30 +244,43 @@ static size_t mix_list(luxfer_scene *room, luxfer_fixture *lamps, size_t count) 
         all++;
     }
     for (i = 0; i < all; i++) {
-        const double factor = factor_of(lamps[i].kind);
+        const double factor = factor_of(on, lamps[i].kind);
         lamps[i].flux *= factor;
         for (k = 0; k < 3; k++) lamps[i].radiance[k] = (float)(factor * lamps[i].radiance[k]);
     }
     return all;
 }
 
-/* Writes the schedule with the columns of luxfer_transfer_save_fixtures. */
-static void write_schedule(const char *path, const luxfer_fixture *lamps, size_t count) {
+/* Begins a schedule with the columns of luxfer_transfer_save_fixtures and, if there are several, the surface. */
+static FILE *begin_schedule(const char *path) {
     FILE *file = fopen(path, "w");
-    size_t i;
     if (!file) {
         perror(path);
         exit(1);
     }
     fprintf(file, "x_m,y_m,z_m,normal_x,normal_y,normal_z,axis_x,axis_y,axis_z,length_m,width_m,area_m2,"
-                  "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind\n");
+                  "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind%s\n", placement_count > 1 ? ",surface" : "");
+    return file;
+}
+
+/* Writes the name of a surface as the last column of a schedule. */
+static void write_surface(FILE *file, const char *name) {
+    fputs(",\"", file);
+    for (; *name; name++) fprintf(file, *name == '"' ? "\"%c" : "%c", *name);
+    fputs("\"", file);
+}
+
+/* Writes the lamps of a surface. */
+static void write_lamps(FILE *file, const placement *on, const luxfer_fixture *lamps, size_t count) {
+    size_t i;
     for (i = 0; i < count; i++) {
         const luxfer_fixture *l = &lamps[i];
         fprintf(file, "%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,", l->position[0], l->position[1], l->position[2],
                 l->normal[0], l->normal[1], l->normal[2], l->axis[0], l->axis[1], l->axis[2]);
-        fprintf(file, "%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%u\n", l->size[0], l->size[1], l->area,
+        fprintf(file, "%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%u", l->size[0], l->size[1], l->area,
                 l->radiance[0], l->radiance[1], l->radiance[2], l->flux, l->cct, l->duv, (unsigned)l->kind);
+        if (placement_count > 1) write_surface(file, on->surface);
+        fputc('\n', file);
     }
-    fclose(file);
 }
 /* [end mix] */

@@ -4,11 +4,17 @@ using Lamps = std::vector<luxfer_fixture>;
 /// A place on a surface: u and v in metres.
 using Place = std::array<double, 2>;
 
-double factor_of(std::uint32_t kind) {
-    for (const Dimmer &dimmer : dimmers)
+double factor_of(const Placement &on, std::uint32_t kind) {
+    for (const Dimmer &dimmer : on.dimmers)
         if (dimmer.kind == kind)
             return dimmer.factor;
     return 1;
+}
+
+/// Whether all lamps of a surface are as the transfer has made them.
+bool is_plain(const Placement &on) {
+    const auto is_full = [](const Dimmer &dimmer) { return dimmer.factor == 1; };
+    return on.added.empty() && std::all_of(on.dimmers.begin(), on.dimmers.end(), is_full);
 }
 
 /// Returns the place on a surface of a position.
@@ -29,6 +35,45 @@ struct Texture {
     luxfer_surface surface;
     double map[2][3]; // u and v in metres, and 1, to shares of width and height
 };
+
+/// Returns the largest distance in metres of the bounds of a mesh from those of a surface.
+double misfit(const luxfer::Scene &lit, std::uint32_t mesh, const luxfer_surface &surface) {
+    std::vector<float> positions(3 * std::size_t(lit.mesh(mesh).vertex_count));
+    lit.read_vertices(mesh, LUXFER_VERTEX_POSITION, positions);
+    Place low = {HUGE_VAL, HUGE_VAL}, high = {-HUGE_VAL, -HUGE_VAL};
+    double out = 0;
+    for (std::size_t i = 0; i < positions.size(); i += 3) {
+        const std::array<double, 3> position = {positions[i], positions[i + 1], positions[i + 2]};
+        const Place place = on_surface(surface, position);
+        double away = 0;
+        for (std::size_t k = 0; k < 3; k++)
+            away += (position[k] - surface.origin[k]) * surface.normal[k];
+        for (std::size_t k = 0; k < 2; k++) {
+            low[k] = std::min(low[k], place[k]);
+            high[k] = std::max(high[k], place[k]);
+        }
+        out = std::max(out, std::fabs(away));
+    }
+    for (std::size_t k = 0; k < 2; k++)
+        out = std::max({out, std::fabs(low[k]), std::fabs(high[k] - surface.size[k])});
+    return out;
+}
+
+/// Returns the mesh with the lamps of a surface. A transfer adds the meshes of its surfaces last; that of a surface
+/// fills its rectangle best.
+std::uint32_t mesh_of(const luxfer::Scene &lit, const luxfer_surface &surface) {
+    const std::uint32_t end = lit.counts().meshes;
+    std::uint32_t best = 0;
+    double smallest = HUGE_VAL;
+    for (std::uint32_t mesh = end - std::uint32_t(placements.size()); mesh < end; mesh++) {
+        const double distance = misfit(lit, mesh, surface);
+        if (distance >= smallest)
+            continue;
+        smallest = distance;
+        best = mesh;
+    }
+    return best;
+}
 
 /// Fits the map from the surface to the texture to the vertices of the mesh that the transfer has added.
 void fit_map(const luxfer::Scene &lit, std::uint32_t mesh, std::uint32_t uv_set, Texture &t) {
@@ -115,7 +160,7 @@ void copy_lamp(const luxfer_fixture &lamp, Texture &t, const std::array<double, 
 }
 
 /// Gives each kind of lamp its share of the light in the texture, and adds lamps to it.
-void mix_texture(Texture &t, const Lamps &lamps) {
+void mix_texture(Texture &t, const Placement &on, const Lamps &lamps) {
     const std::size_t pixels = t.labels.at.size();
     std::vector<bool> is_lit;
     for (std::size_t i = 0; i < pixels; i++)
@@ -126,26 +171,29 @@ void mix_texture(Texture &t, const Lamps &lamps) {
     std::vector<float> factors(std::size_t(t.count) + 1, 1.0f);
     for (const auto &lamp : lamps)
         for (const int region : regions_of(lamp, t))
-            factors[std::size_t(region)] = float(factor_of(lamp.kind));
+            factors[std::size_t(region)] = float(factor_of(on, lamp.kind));
     for (std::size_t i = 0; i < 3 * pixels; i++)
         t.values[i] *= factors[std::size_t(t.labels.at[i / 3])];
-    for (const auto &added : added_lamps)
+    for (const auto &added : on.added)
         if (const auto model = model_of(lamps, std::uint32_t(added[0])))
             copy_lamp(*model, t, added);
 }
 
-/// Changes the lamps of the lit room.
-void mix_lamps(const luxfer::Scene &room, const luxfer::Scene &lit, const Lamps &lamps) {
-    const std::uint32_t mesh = lit.counts().meshes - 1, material = lit.mesh(mesh).material;
+/// Changes the lamps of a surface in the lit room.
+void mix_lamps(const luxfer::Scene &room, const luxfer::Scene &lit, const Placement &on, const Lamps &lamps) {
+    if (is_plain(on))
+        return;
+    const luxfer_surface surface = room.find_surface(on.surface);
+    const std::uint32_t mesh = mesh_of(lit, surface), material = lit.mesh(mesh).material;
     const auto use = lit.material_texture(material, LUXFER_TEXTURE_EMISSION);
     const auto image = lit.texture(use.texture);
     const auto size = image.size();
     Texture t = {};
     t.values = image.samples();
     t.labels = {int(size.width), int(size.height), std::vector<int>(std::size_t(size.width) * size.height)};
-    t.surface = room.find_surface(surface_name);
+    t.surface = surface;
     fit_map(lit, mesh, use.uv_set, t);
-    mix_texture(t, lamps);
+    mix_texture(t, on, lamps);
     const luxfer::ConstImageView view(t.values, size.width, size.height, size.channels);
     const auto changed = luxfer::Image::create(lit.context(), view);
     const auto index = lit.add_texture(changed, use.wrap_u, use.wrap_v);
@@ -153,10 +201,10 @@ void mix_lamps(const luxfer::Scene &room, const luxfer::Scene &lit, const Lamps 
 }
 
 /// Appends the added lamps to the list of lamps, and gives each lamp its share of the light.
-void mix_list(const luxfer::Scene &room, Lamps &lamps) {
-    const auto surface = room.find_surface(surface_name);
+void mix_list(const luxfer::Scene &room, const Placement &on, Lamps &lamps) {
+    const auto surface = room.find_surface(on.surface);
     const Lamps found = lamps;
-    for (const auto &added : added_lamps) {
+    for (const auto &added : on.added) {
         auto lamp = model_of(found, std::uint32_t(added[0]));
         if (!lamp)
             continue;
@@ -166,28 +214,35 @@ void mix_list(const luxfer::Scene &room, Lamps &lamps) {
         lamps.push_back(*lamp);
     }
     for (auto &lamp : lamps) {
-        const double factor = factor_of(lamp.kind);
+        const double factor = factor_of(on, lamp.kind);
         lamp.flux *= factor;
         for (float &value : lamp.radiance)
             value = float(factor * value);
     }
 }
 
-/// Writes the schedule with the columns of luxfer_transfer_save_fixtures.
-void write_schedule(const char *path, const Lamps &lamps) {
-    std::FILE *file = std::fopen(path, "w");
-    if (file == nullptr)
+/// Begins a schedule with the columns of luxfer_transfer_save_fixtures and, if there are several, the surface.
+std::ofstream begin_schedule(const char *path) {
+    std::ofstream out(path);
+    if (!out)
         throw std::runtime_error(std::string(path) + " cannot be written");
-    std::fprintf(file, "x_m,y_m,z_m,normal_x,normal_y,normal_z,axis_x,axis_y,axis_z,length_m,width_m,area_m2,"
-                       "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind\n");
+    out << "x_m,y_m,z_m,normal_x,normal_y,normal_z,axis_x,axis_y,axis_z,length_m,width_m,area_m2,"
+           "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind"
+        << (placements.size() > 1 ? ",surface\n" : "\n") << std::setprecision(7);
+    return out;
+}
+
+/// Writes the lamps of a surface.
+void write_lamps(std::ofstream &out, const Placement &on, const Lamps &lamps) {
     for (const auto &l : lamps) {
         for (const auto *numbers : {l.position, l.normal, l.axis})
-            std::fprintf(file, "%.7g,%.7g,%.7g,", double(numbers[0]), double(numbers[1]), double(numbers[2]));
-        std::fprintf(file, "%.7g,%.7g,%.7g,", l.size[0], l.size[1], l.area);
-        std::fprintf(file, "%.7g,%.7g,%.7g,", double(l.radiance[0]), double(l.radiance[1]), double(l.radiance[2]));
-        std::fprintf(file, "%.7g,%.7g,%.7g,%u\n", l.flux, l.cct, l.duv, unsigned(l.kind));
+            out << numbers[0] << ',' << numbers[1] << ',' << numbers[2] << ',';
+        out << l.size[0] << ',' << l.size[1] << ',' << l.area << ',' << l.radiance[0] << ',' << l.radiance[1] << ','
+            << l.radiance[2] << ',' << l.flux << ',' << l.cct << ',' << l.duv << ',' << l.kind;
+        if (placements.size() > 1)
+            out << ',' << std::quoted(std::string(on.surface), '"', '"');
+        out << '\n';
     }
-    std::fclose(file);
 }
 
 // [end mix]

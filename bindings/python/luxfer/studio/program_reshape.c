@@ -109,14 +109,14 @@ static int *find_reshaped(const edit *e) {
 }
 
 /* Moves, resizes and turns lamps in the photo and in the mask of its lights. */
-static void reshape_lamps(luxfer_transfer *transfer, luxfer_image *photo) {
+static void reshape_lamps(luxfer_transfer **transfers, luxfer_image *photo) {
     luxfer_image *mask = NULL, *plane = NULL, *changed;
     uint32_t width, height, channels;
     size_t k, pixels;
     int *found, i;
     edit e;
-    check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_LIGHTS_MASK, &mask), "mask");
-    check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_PLANE_MASK, &plane), "mask");
+    check(luxfer_transfer_get_image(transfers[0], LUXFER_TRANSFER_LIGHTS_MASK, &mask), "mask");
+    check(luxfer_transfer_get_image(transfers[0], LUXFER_TRANSFER_PLANE_MASK, &plane), "mask");
     e.mask = pixels_of(mask, &width, &height, &channels);
     e.plane = pixels_of(plane, &width, &height, &channels);
     e.new_mask = pixels_of(mask, &width, &height, &channels);
@@ -133,10 +133,11 @@ static void reshape_lamps(luxfer_transfer *transfer, luxfer_image *photo) {
     for (k = 0; k < reshaped_lamp_count; k++)
         if (found[k]) put_back(&e, found[k], reshaped_lamps[k] + 2, reshaped_lamps[k] + 10);
     changed = image_of(e.new_photo, width, height, channels);
-    check(luxfer_transfer_set_photo(transfer, changed), "photo");
+    for (k = 0; k < placement_count; k++) check(luxfer_transfer_set_photo(transfers[k], changed), "photo");
     luxfer_release(changed);
     changed = image_of(e.new_mask, width, height, 1);
-    check(luxfer_transfer_use_mask(transfer, LUXFER_PHASE_LIGHTS, changed), "mask");
+    for (k = 0; k < placement_count; k++)
+        check(luxfer_transfer_use_mask(transfers[k], LUXFER_PHASE_LIGHTS, changed), "mask");
     luxfer_release(changed), luxfer_release(mask), luxfer_release(plane);
     free(found), free(e.labels), free(e.is_lit);
     free(e.new_photo), free(e.photo), free(e.new_mask), free(e.plane), free(e.mask);

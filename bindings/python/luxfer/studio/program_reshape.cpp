@@ -113,12 +113,12 @@ std::vector<int> find_reshaped(Edit &e) {
 }
 
 /// Moves, resizes and turns lamps in the photo and in the mask of its lights.
-void reshape_lamps(const luxfer::Transfer &transfer, const luxfer::Image &photo) {
+void reshape_lamps(const std::vector<luxfer::Transfer> &transfers, const luxfer::Image &photo) {
     const auto size = photo.size();
     Edit e;
     e.photo = e.new_photo = photo.samples();
-    e.mask = e.new_mask = transfer.image(LUXFER_TRANSFER_LIGHTS_MASK).samples();
-    e.plane = transfer.image(LUXFER_TRANSFER_PLANE_MASK).samples();
+    e.mask = e.new_mask = transfers[0].image(LUXFER_TRANSFER_LIGHTS_MASK).samples();
+    e.plane = transfers[0].image(LUXFER_TRANSFER_PLANE_MASK).samples();
     e.channels = int(size.channels);
     e.labels = {int(size.width), int(size.height), std::vector<int>(e.mask.size())};
     for (const float value : e.mask)
@@ -132,8 +132,12 @@ void reshape_lamps(const luxfer::Transfer &transfer, const luxfer::Image &photo)
             put_back(e, found[k], reshaped_lamps[k]);
     const luxfer::ConstImageView pixels(e.new_photo, size.width, size.height, size.channels);
     const luxfer::ConstImageView mask(e.new_mask, size.width, size.height, 1);
-    transfer.set_photo(luxfer::Image::create(transfer.context(), pixels));
-    transfer.use(LUXFER_PHASE_LIGHTS, luxfer::Image::create(transfer.context(), mask));
+    const luxfer::Image new_photo = luxfer::Image::create(photo.context(), pixels);
+    const luxfer::Image new_mask = luxfer::Image::create(photo.context(), mask);
+    for (const auto &transfer : transfers) {
+        transfer.set_photo(new_photo);
+        transfer.use(LUXFER_PHASE_LIGHTS, new_mask);
+    }
 }
 
 // [end reshaped]

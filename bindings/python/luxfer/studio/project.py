@@ -33,6 +33,7 @@ DEFAULTS: Project = {
     "pattern": {"scale": "distance", "length": 1.2, "rotation": 0.0, "offset": [0.0, 0.0], "keep_whole": False},
     "mix": {},  # for each kind of lamp, the factor of its light; 1 for kinds that are not named
     "added": [],  # [kind, u, v] in metres on the surface: a copy of a lamp of this kind
+    "others": [],  # {"surface", "pattern", "zones", "mix", "added"} of each further surface that receives lamps
     "lux_plane": {"surface": None, "height": 0.75},  # where the page shows lux: a surface, or a height above the floor
     "white": 100.0,  # luminance of the photo's white, cd/m²
     "camera": None,  # {"position", "target", "fov_y"}; None: the first camera of the room
@@ -159,6 +160,17 @@ def corners(value: Any, name: str) -> list[float]:
 
 
 FILE = record(name=text, sha256=text)
+PATTERN = record(
+    scale=one_of(SCALES),
+    length=number(1e-3, 1e3),
+    rotation=number(-math.tau, math.tau),
+    offset=many(METRE, 2),
+    keep_whole=truth,
+)
+ZONES = many(many(METRE, 4), max_count=5000)
+ADDED = many(many(METRE, 3), max_count=1000)
+#: A transfer of the library has up to 16 planes.
+MAX_OTHERS = 15
 FIELDS = {
     "photo": FILE,
     "room": optional(FILE),
@@ -166,17 +178,14 @@ FIELDS = {
     "removed": many(many(PIXEL, 2), max_count=5000),
     "reshaped": many(record(at=many(PIXEL, 2), before=corners, after=corners), max_count=1000),
     "grid": optional(many(PIXEL, 8)),
-    "zones": many(many(METRE, 4), max_count=5000),
+    "zones": ZONES,
     "surface": optional(text),
-    "pattern": record(
-        scale=one_of(SCALES),
-        length=number(1e-3, 1e3),
-        rotation=number(-math.tau, math.tau),
-        offset=many(METRE, 2),
-        keep_whole=truth,
-    ),
+    "pattern": PATTERN,
     "mix": factors(0, 4),
-    "added": many(many(METRE, 3), max_count=1000),
+    "added": ADDED,
+    "others": many(
+        record(surface=text, pattern=PATTERN, zones=ZONES, mix=factors(0, 4), added=ADDED), max_count=MAX_OTHERS
+    ),
     "lux_plane": record(surface=optional(text), height=number(0, 100)),
     "white": number(1e-3, 1e6),
     "camera": optional(record(position=many(METRE, 3), target=many(METRE, 3), fov_y=number(0.01, 3))),
@@ -199,6 +208,9 @@ def checked(value: Any) -> Project:
     for i, stroke in enumerate(out["strokes"]):
         if len(stroke["points"]) % 2 or not stroke["points"]:
             raise Invalid(f"strokes[{i}].points has an x and a y for each point")
+    names = [out["surface"], *(other["surface"] for other in out["others"])]
+    if out["others"] and (None in names or len(set(names)) < len(names)):
+        raise Invalid("others names each further surface once, and surface is not one of them")
     return out
 
 
