@@ -135,8 +135,8 @@ export class PatternForm {
   setEstimates(message: Message): void {
     const [value, low, high] = message.proposed_white as number[];
     const distance = Number.isFinite(message.distance)
-      ? `The photo's camera is taken to be ${short(message.distance)} m from the plane of the lamps ` +
-        `(± ${Math.round(100 * message.distance_error)} %). `
+      ? `The photo's camera is taken to be ${short(message.distance)} m ` +
+        `(${(message.distance_range as number[]).map(short).join(" to ")} m) from the plane of the lamps. `
       : "";
     const isSame = Math.abs((this.project?.white ?? 0) - value) < 0.6;
     this.proposal.replaceChildren(

@@ -17,7 +17,7 @@ import luxfer
 import numpy as np
 
 from ..cli.plane import Plane
-from . import layout, measure, mix, pictures
+from . import intervals, layout, measure, mix, pictures
 from .jobs import Latest
 from .layout import Layout
 from .project import Project
@@ -193,7 +193,7 @@ class Light:
         proposed = report.proposed_white, report.proposed_white_low, report.proposed_white_high
         if shot.edited is not None and known.white_luminance > 0:  # a photo with reshaped lamps has no metadata
             proposed = known.white_luminance, known.white_luminance_low, known.white_luminance_high
-        distance = shot.kept_distance or (report.plane_distance, report.plane_distance_error)
+        distance, error = self.distance()
         self.send(
             "texture",
             pictures.rgb(values, 1 / max(1e-9, float(values.max()))),
@@ -202,10 +202,15 @@ class Light:
             texels=[width, height],
             digest=pictures.digest(image),
             surface={"name": surface, **(rectangle(self.room, surface) or {})},
-            distance=distance[0],
-            distance_error=distance[1],
+            distance=distance,
+            distance_range=intervals.around(distance, error),
             proposed_white=proposed,
         )
+
+    def distance(self) -> tuple[float, float]:
+        """Returns the distance of the photo's camera from the plane, and its relative standard deviation."""
+        report = self.transfer.report
+        return self.shots[self.active].kept_distance or (report.plane_distance, report.plane_distance_error)
 
     def relight(self, project: Project) -> None:
         self.stage("relight", {"white_luminance": project["white"], "relight": RELIGHT})
@@ -218,12 +223,19 @@ class Light:
         """Sends the lamps of the surface on which the user works, how their texture lies, and the light of the others."""
         placed = self.placed()
         names = ("kind", "position", "axis", "normal", "size", "flux", "radiance", "cct", "duv")
-        lamps = [{k: getattr(lamp, k) for k in names} | {"added": number} for lamp, number in mix.lamps(placed[self.active])]
+        found = mix.lamps(placed[self.active])
+        lamps = [{k: getattr(lamp, k) for k in names} | {"added": number} for lamp, number in found]
+        report, solution = self.transfer.report, self.transfer.solution
+        is_estimated = self.layouts[self.active].pattern["scale"] == "distance"
+        scale_error = self.distance()[1] if is_estimated else 0.0
         others = [one for i, one in enumerate(placed) if i != self.active]
         self.send(
             "lamps",
-            error=self.transfer.solution.error,
+            error=solution.error,
             list=lamps,
+            kinds=intervals.of_kinds(
+                self.context, [lamp for lamp, _ in found], solution, scale_error, report.texel_size
+            ),
             to_texture=mix.texture_map(self.lit, placed[self.active].surface, len(placed)).tolist(),
             others=[
                 {"surface": one.layout.surface, "lamps": len(found), "flux": math.fsum(lamp.flux for lamp, _ in found)}
@@ -380,5 +392,11 @@ class Light:
         chosen = {k: v for k, v in plan.render_params.items() if k in ("samples", "target_error", "seed")}
         self.planned = {"render": chosen}
         self.send(
-            "plan", noise=project["noise"], seconds=plan.report.seconds, error=plan.report.error, plan=self.planned
+            "plan",
+            noise=project["noise"],
+            seconds=plan.report.seconds,
+            seconds_range=intervals.of_plan(plan.report.seconds),
+            error=plan.report.error,
+            error_range=intervals.of_plan(plan.report.error),
+            plan=self.planned,
         )
