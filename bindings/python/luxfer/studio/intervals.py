@@ -12,7 +12,7 @@ from luxfer.photometry import colour_temperature
 #: Standard deviations on each side of a 95 % interval.
 WIDTH = 1.96
 #: Samples of the colour of the solution.
-SAMPLES = 400
+SAMPLES = 200
 #: Plans predict time and noise within this share, in more than nine of ten cases. [bench plan]
 PLAN_SHARE = 0.25
 

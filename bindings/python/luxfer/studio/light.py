@@ -113,8 +113,8 @@ class Light:
         self.step("mix", mixes, self.mix)
         self.step("lamps", surface, self.send_lamps)
         self.done["mix"] = project
-        self.step("lux", project["lux_plane"], lambda: self.measure(project))
         self.step("first", shot, lambda: self.first_picture(project, size))
+        self.step("lux", project["lux_plane"], lambda: self.measure(project))
         if compare != "off":
             self.step("before", [compare, *shot], lambda: self.first_before(project, size, compare))
         self.step("second", shot, lambda: self.second_picture(project, size))
