@@ -1,5 +1,7 @@
 // Vanishing lines and the grid of the plane, drawn over the photo.
 
+import { AXES, ON_PHOTO } from "./palette";
+
 export interface View {
   vanishing: [number, number, number][]; // homogeneous pixels
   support: number[];
@@ -13,12 +15,6 @@ export interface View {
   distance: number | null; // of the camera from the plane, in metres
 }
 
-/** The three axes differ by colour (Okabe and Ito) and by dashes. */
-const AXES = [
-  { colour: "#e69f00", dashes: [] },
-  { colour: "#009e73", dashes: [8, 4] },
-  { colour: "#cc79a7", dashes: [2, 4] },
-];
 /** Lines of each fan meet the photo's border at this distance, as a share of its width. */
 const FAN = 1 / 6;
 const FINITE = 1e-9;
@@ -81,7 +77,7 @@ export function drawGrid(context: CanvasRenderingContext2D, view: View, scale: n
   for (let y = 0; y <= height; y += step) line(path, view, [0, y], [width, y]);
   line(path, view, [width, 0], [width, height]);
   line(path, view, [0, height], [width, height]);
-  outlined(context, path, "#ffffff", [], scale);
+  outlined(context, path, ON_PHOTO.grid.colour, ON_PHOTO.grid.dashes, scale);
 }
 
 /** Pieces of a line of the grid, which a lens with distortion bends. */

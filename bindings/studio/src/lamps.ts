@@ -3,6 +3,7 @@
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
 import { rgbPicture } from "./masks";
+import { ON_PLAN } from "./palette";
 import type { Added } from "./project";
 import type { Spot } from "./room_view";
 import { dot, type Rectangle } from "./surface";
@@ -268,7 +269,7 @@ export class LampList {
         context.fillStyle = "#fff1dc"; // the texture of the pattern does not have it
         context.fillRect(u0, v0, u1 - u0, v1 - v0);
       }
-      context.strokeStyle = "#56b4e9";
+      context.strokeStyle = ON_PLAN.lamp.colour;
       context.lineWidth = 2;
       context.strokeRect(u0, v0, u1 - u0, v1 - v0);
       if (lamp.kind) {
@@ -327,8 +328,8 @@ export class LampList {
 }
 
 function drawZone(context: CanvasRenderingContext2D, [u0, v0, u1, v1]: Zone): void {
-  context.strokeStyle = "#fff";
-  context.setLineDash([6, 5]);
+  context.strokeStyle = ON_PLAN["free place"].colour;
+  context.setLineDash(ON_PLAN["free place"].dashes);
   context.lineWidth = 2;
   context.strokeRect(u0, v0, u1 - u0, v1 - v0);
   context.beginPath();

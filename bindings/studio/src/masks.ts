@@ -1,5 +1,7 @@
 // Masks as pictures to lay over the photo.
 
+import { ON_PHOTO } from "./palette";
+
 export interface Masks {
   width: number;
   height: number;
@@ -7,13 +9,19 @@ export interface Masks {
   isLive: boolean;
 }
 
+/** The colour and the opacity of each mask. */
 const COLOURS: Record<string, [number, number, number, number]> = {
-  plane: [86, 180, 233, 78],
-  lights: [240, 228, 66, 190],
+  plane: [...bytes(ON_PHOTO["plane mask"].colour), 78],
+  lights: [...bytes(ON_PHOTO["lights mask"].colour), 190],
 };
 const EDGE_ALPHA = 255;
 /** Side of the stripes that mark a proposal, in pixels of the mask. */
 const STRIPE = 6;
+
+/** Red, green and blue of a colour such as #56b4e9. */
+function bytes(colour: string): [number, number, number] {
+  return [1, 3, 5].map((at) => parseInt(colour.slice(at, at + 2), 16)) as [number, number, number];
+}
 
 /** The bits of a mask as bytes, with a border of zeros around it. */
 function unpacked(bits: Uint8Array, width: number, height: number): Uint8Array {

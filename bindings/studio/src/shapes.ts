@@ -1,6 +1,7 @@
 // Lamps of the photo with handles: each can be moved, resized and turned on its plane.
 
 import { inPhoto, onPlane, outlined, type View } from "./geometry";
+import { ON_PHOTO } from "./palette";
 import type { Reshaped } from "./project";
 
 type Point = [number, number];
@@ -279,15 +280,15 @@ export class Shapes {
     if (!this.view) return;
     this.lamps.forEach((lamp, i) => {
       if (lamp.isChanged || lamp.now !== lamp.before)
-        outlined(context, closed(lamp.shape.corners), "#ffffff", [4, 4], scale);
-      if (i !== this.selected) outlined(context, closed(this.cornersOf(lamp.now)), "#ffffff", [], scale);
+        outlined(context, closed(lamp.shape.corners), ON_PHOTO["lamp before"].colour, ON_PHOTO["lamp before"].dashes, scale);
+      if (i !== this.selected) outlined(context, closed(this.cornersOf(lamp.now)), ON_PHOTO.grid.colour, [], scale);
     });
     const lamp = this.lamps[this.selected];
     if (!lamp) return;
     const path = closed(this.cornersOf(lamp.now));
     path.moveTo(...this.pointOf(lamp.now, 1, 0));
     path.lineTo(...this.knobOf(lamp.now, scale));
-    outlined(context, path, "#f0e442", [], scale);
+    outlined(context, path, ON_PHOTO.light.colour, [], scale);
     for (const [sx, sy] of CORNERS) handle(context, this.pointOf(lamp.now, sx, sy), HANDLE / scale, true);
     for (const [sx, sy] of SIDES) handle(context, this.pointOf(lamp.now, sx, sy), (0.8 * HANDLE) / scale, true);
     handle(context, this.knobOf(lamp.now, scale), HANDLE / scale, false);
