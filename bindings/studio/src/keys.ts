@@ -16,6 +16,8 @@ const KEYS: [string, string][] = [
   ["Photo, Shape: Space", "the next lamp; Delete: as it is in the photo"],
   ["Photo, Shape: arrow keys", "move the lamp; with Shift: its width and its length; , and . turn it"],
   ["Photo: + and −", "zoom"],
+  ["Stylise: arrow keys", "move the brush, with Shift in small steps"],
+  ["Stylise: Space, Enter", "start and end a stroke (Escape: no stroke), a dot"],
   ["Room: arrow keys", "turn the view; with another tool, choose the ceiling, or shift, turn or size the lamps"],
   ["Room: + and −", "move the view"],
   ["Room: Home", "the room's own view"],
