@@ -25,9 +25,9 @@ class Projects(Case):
 
     def test_a_surface_is_named_once(self):
         self.assertEqual(len(self.checked(surface="Ceiling", others=[WALL])["others"]), 1)
-        for wrong in ({"surface": None, "others": [WALL]}, {"surface": WALL["surface"], "others": [WALL]}, {"surface": "Ceiling", "others": [WALL, WALL]}):
+        for surface, others in ((None, [WALL]), (WALL["surface"], [WALL]), ("Ceiling", [WALL, WALL])):
             with self.assertRaisesRegex(project.Invalid, "others"):
-                self.checked(**wrong)
+                self.checked(surface=surface, others=others)
 
     def test_the_order_does_not_depend_on_the_surface_on_which_the_user_works(self):
         one = self.checked(surface="Ceiling", others=[WALL])

@@ -29,8 +29,8 @@ def of_plan(value: float) -> list[float]:
 
 
 def sizes(lamps: list[luxfer.types.Fixture], scale_error: float, texel: float) -> list[list[float]]:
-    """Returns bounds of the length and of the width of lamps of one kind, in metres: all lamps lie within, with the 95 %
-    interval of the scale and one texel on each side."""
+    """Returns bounds of the length and of the width of lamps of one kind, in metres: all lamps lie within, with the
+    95 % interval of the scale and one texel on each side."""
     out = []
     for k in (0, 1):
         values = [lamp.size[k] for lamp in lamps]
@@ -38,10 +38,12 @@ def sizes(lamps: list[luxfer.types.Fixture], scale_error: float, texel: float) -
     return out
 
 
-def kelvin(context: luxfer.Context, lamps: list[luxfer.types.Fixture], solution: luxfer.types.RelightReport) -> list[float]:
-    """Returns bounds of the colour temperature of lamps of one kind: all lamps lie within, with the 95 % interval of the
-    noise of the solution. The library states the noise of each channel and not their correlation, so the channels are
-    taken as independent. The paths of all channels are the same, so the true interval is narrower."""
+def kelvin(
+    context: luxfer.Context, lamps: list[luxfer.types.Fixture], solution: luxfer.types.RelightReport
+) -> list[float]:
+    """Returns bounds of the colour temperature of lamps of one kind: all lamps lie within, with the 95 % interval of
+    the noise of the solution. The library states the noise of each channel and not their correlation, so the channels
+    are taken as independent. The paths of all channels are the same, so the true interval is narrower."""
     pairs = zip(solution.half_width, solution.scale)
     errors = np.array([half / scale / WIDTH if scale > 0 else 0.0 for half, scale in pairs])
     factors = np.exp(np.random.default_rng(1).standard_normal((SAMPLES, 3)) * errors)

@@ -44,8 +44,8 @@ class Placed(NamedTuple):
 
 
 def layouts(project: Project, surface: str) -> list[Layout]:
-    """Returns the layouts of all surfaces, in the order of their names, so that the order does not depend on the surface
-    on which the user works; `surface` is the one of a project that names none."""
+    """Returns the layouts of all surfaces, in the order of their names, so that the order does not depend on the
+    surface on which the user works; `surface` is the one of a project that names none."""
     first = Layout(project["surface"] or surface, *(project[name] for name in Layout._fields[1:]))
     others = [Layout(*(other[name] for name in Layout._fields)) for other in project["others"]]
     return sorted([first, *others], key=lambda layout: layout.surface)

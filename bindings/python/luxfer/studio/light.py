@@ -220,7 +220,7 @@ class Light:
         self.lit = mix.apply(self.placed())
 
     def send_lamps(self) -> None:
-        """Sends the lamps of the surface on which the user works, how their texture lies, and the light of the others."""
+        """Sends the lamps of the surface on which the user works, how their texture lies, and the light of others."""
         placed = self.placed()
         names = ("kind", "position", "axis", "normal", "size", "flux", "radiance", "cct", "duv")
         found = mix.lamps(placed[self.active])

@@ -1,8 +1,8 @@
 """Masks while strokes are painted, at a small size, and the pixel where one more stroke would help most.
 
-Strokes may change the layout of the room, and with it the features of the small photo. They rarely do, so the masks by the
-former features come first; then the features are computed again, and the masks only if the features have changed. When
-the user pauses, light.py computes the masks at full size.
+Strokes may change the layout of the room, and with it the features of the small photo. They rarely do, so the masks by
+the former features come first; then the features are computed again, and the masks only if the features have changed.
+When the user pauses, light.py computes the masks at full size.
 """
 
 from __future__ import annotations
@@ -62,8 +62,8 @@ class LiveMasks:
         self.segments: dict[str, luxfer.Segment] = {}
 
     def follow(self, project: Project, thread: Latest[Any], show: Callable[[dict[str, luxfer.Image]], None]) -> None:
-        """Computes the masks from the strokes of a project, and passes them to `show`; masks that cannot be computed are
-        missing. First come the masks by the features of the strokes before, then, if the new strokes have changed the
+        """Computes the masks from the strokes of a project, and passes them to `show`; masks that cannot be computed
+        are missing. First come the masks by the features of the strokes before, then, if the new strokes have changed the
         features, the masks by these."""
         strokes = strokes_of(self.context, project, self.size, self.share)
         if self.features is not None:

@@ -35,8 +35,8 @@ def models(fixtures: list[luxfer.types.Fixture]) -> dict[int, int]:
 
 
 def lamps(placed: Placed) -> list[tuple[luxfer.types.Fixture, int | None]]:
-    """Returns the lamps of a surface, each with the number of its addition or None. Additions of a kind that the room no
-    longer has are left out."""
+    """Returns the lamps of a surface, each with the number of its addition or None. Additions of a kind that the room
+    no longer has are left out."""
     fixtures = placed.transfer.fixtures
     known = models(fixtures)
     out: list[tuple[luxfer.types.Fixture, int | None]] = [(lamp, None) for lamp in fixtures]

@@ -360,7 +360,8 @@ static void transfer_light(luxfer_transfer **transfers, luxfer_image *photo) {
         fill_settings(&all[k], &placements[k]);
         params[k] = &all[k].params;
         run(transfers[k], LUXFER_STAGE_VIEW, LUXFER_STAGE_LIGHTS, NULL, "masks");
-        check(luxfer_transfer_set_zones(transfers[k], zones[placements[k].first_zone], placements[k].zone_count), "zones");
+        check(luxfer_transfer_set_zones(transfers[k], zones[placements[k].first_zone], placements[k].zone_count),
+              "zones");
     }
     /* [start removed] */
     take_out(transfers);
@@ -374,7 +375,8 @@ static void transfer_light(luxfer_transfer **transfers, luxfer_image *photo) {
     /* [start reshaped] */
     reshape_lamps(transfers, photo);
     /* [end reshaped] */
-    for (k = 0; k < placement_count; k++) run(transfers[k], LUXFER_STAGE_UNWARP, LUXFER_STAGE_UNWARP, params[k], "plane");
+    for (k = 0; k < placement_count; k++)
+        run(transfers[k], LUXFER_STAGE_UNWARP, LUXFER_STAGE_UNWARP, params[k], "plane");
     check(luxfer_transfer_start_all(context, transfers, placement_count, LUXFER_STAGE_EMISSION, LUXFER_STAGE_RELIGHT,
                                     params, &job), "light");
     finish(job, "light");

@@ -95,8 +95,8 @@ def placements_of(layouts: list[Layout]) -> str:
         )
         first = [begin + count for begin, count in zip(first, counts)]
     return (
-        "\n/* Each surface that receives lamps, and the pattern on it; then the first of its places without lamps, of its\n"
-        " * dimmed kinds and of its added lamps, and their numbers. */\n"
+        "\n/* Each surface that receives lamps, and the pattern on it; then the first of its places without lamps,\n"
+        " * of its dimmed kinds and of its added lamps, and their numbers. */\n"
         "typedef struct placement {\n    const char *surface;\n    luxfer_pattern_scale scale;\n"
         "    double length, rotation, offset[2], margin;\n"
         "    size_t first_zone, zone_count, first_dimmer, dimmer_count, first_added, added_count;\n} placement;\n"
@@ -140,8 +140,8 @@ def data_of(project: Project, chosen: Chosen) -> str:
     if project["reshaped"]:
         rows = [numbers([*lamp["at"], *lamp["before"], *lamp["after"]]) for lamp in project["reshaped"]]
         out += [
-            "\n/* Each lamp of the photo that was moved, resized or turned: a pixel on it, and the corners of its rectangle\n"
-            " * before and after. Its pixels may lie outside of the box of its corners by a share. */\n",
+            "\n/* Each lamp of the photo that was moved, resized or turned: a pixel on it, and the corners of its\n"
+            " * rectangle before and after. Its pixels may lie outside of the box of its corners by a share. */\n",
             counted("double", "reshaped_lamp", rows, "{0}", "[18]"),
             f"static const double beyond_lamp = {BEYOND!r};\n",
         ]
@@ -197,8 +197,8 @@ def filled(source: Path, project: Project, chosen: Chosen, data: str, places: tu
     """Returns the text of a source in C or C++ with the values of a project, and without the parts that the project
     does not need."""
     is_plain = is_plain_room(chosen.layouts)
-    is_needed = {"removed": bool(project["removed"]), "mix": not is_plain, "plain": is_plain, "grid": bool(chosen.by_grid)}
-    is_needed["reshaped"] = bool(project["reshaped"])
+    is_needed = {name: bool(project[name]) for name in ("removed", "reshaped")}
+    is_needed |= {"mix": not is_plain, "plain": is_plain, "grid": bool(chosen.by_grid)}
     is_needed["nearest"] = is_needed["removed"] or is_needed["reshaped"]
     is_needed["regions"] = is_needed["nearest"] or is_needed["mix"]
     is_needed["pixels"] = is_needed["regions"] or is_needed["grid"]
@@ -211,7 +211,8 @@ def filled(source: Path, project: Project, chosen: Chosen, data: str, places: tu
         part = rf"{mark(f'start {name}')}(.*?){mark(f'end {name}')}"
         text = re.sub(part, r"\1" if is_kept else "", text, flags=re.DOTALL)
     render = (project["plan"] or {"render": {"target_error": project["noise"]}})["render"]
-    values = {"data": data, "settings": settings_of(project, chosen.distance, places), "render": assignments("params", render)}
+    settings = settings_of(project, chosen.distance, places)
+    values = {"data": data, "settings": settings, "render": assignments("params", render)}
     for name, lines in values.items():
         text = re.sub(mark(name), lambda _, lines=lines: lines, text)  # type: ignore[misc]
     return text

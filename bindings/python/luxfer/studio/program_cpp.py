@@ -54,7 +54,8 @@ def removed_of(project: Project) -> str:
 
 def reshaped_of(project: Project) -> str:
     values = [
-        f"{{{numbers(lamp['at'])}, {numbers(lamp['before'])}, {numbers(lamp['after'])}}}" for lamp in project["reshaped"]
+        f"{{{numbers(lamp['at'])}, {numbers(lamp['before'])}, {numbers(lamp['after'])}}}"
+        for lamp in project["reshaped"]
     ]
     return (
         "\n/// A lamp of the photo that was moved, resized or turned: a pixel on it, and the corners of its rectangle\n"

@@ -127,9 +127,11 @@ def turn_of(a: tuple[float, float], b: tuple[float, float], c: tuple[float, floa
 # -- the change
 
 
-def apply(photo: Array, mask: Array, plane: Array, reshaped: list[dict[str, Any]], max_distance: float) -> tuple[Array, Array]:
-    """Returns photo and mask of the lights after the changes. `plane` is the mask of the plane; max_distance, in pixels,
-    is how far `at` may lie from its lamp."""
+def apply(
+    photo: Array, mask: Array, plane: Array, reshaped: list[dict[str, Any]], max_distance: float
+) -> tuple[Array, Array]:
+    """Returns photo and mask of the lights after the changes. `plane` is the mask of the plane; max_distance, in
+    pixels, is how far `at` may lie from its lamp."""
     is_lit = mask > 0.5
     labels, _ = regions(is_lit)
     found = [nearest(labels, lamp["at"], max_distance) for lamp in reshaped]
@@ -157,7 +159,15 @@ def beside(photo: Array, is_lamp: Array, is_plane: Array) -> Array:
     return np.asarray((np.add.accumulate(colours, axis=0)[-1] / len(colours)).astype(np.float32))
 
 
-def put(photo: Array, mask: Array, is_lamp: Array, before: list[float], after: list[float], out_photo: Array, out_mask: Array) -> None:
+def put(
+    photo: Array,
+    mask: Array,
+    is_lamp: Array,
+    before: list[float],
+    after: list[float],
+    out_photo: Array,
+    out_mask: Array,
+) -> None:
     """Puts the pixels of a lamp from one quadrilateral of the photo into another."""
     height, width = mask.shape
     inverse = inverse_of(square_to(after))
@@ -191,7 +201,9 @@ def square_to(corners: list[float]) -> list[float]:
 def inverse_of(m: list[float]) -> list[float]:
     """Returns the adjugate of a map, which is its inverse up to a factor."""
     a, b, c, d, e, f, g, h, i = m
-    return [e * i - f * h, c * h - b * i, b * f - c * e, f * g - d * i, a * i - c * g, c * d - a * f, d * h - e * g, b * g - a * h, a * e - b * d]
+    first = [e * i - f * h, c * h - b * i, b * f - c * e]
+    second = [f * g - d * i, a * i - c * g, c * d - a * f]
+    return [*first, *second, d * h - e * g, b * g - a * h, a * e - b * d]
 
 
 def mapped(m: list[float], x: Any, y: Any) -> tuple[Any, Any]:

@@ -37,7 +37,8 @@ def pattern_of(pattern: dict[str, Any]) -> dict[str, Any]:
 
 
 def texture_settings(project: Project, distance: tuple[float, float] | None = None) -> dict[str, Any]:
-    """Returns the settings of a transfer's texture but its pattern; `distance` is that from the plane, if lamps have been reshaped."""
+    """Returns the settings of a transfer's texture but its pattern; `distance` is that from the plane, if lamps have
+    been reshaped."""
     kept = {} if distance is None else {"plane_distance": distance[0]}
     return {"max_texels": MAX_TEXELS, **kept, "white_luminance": project["white"]}
 

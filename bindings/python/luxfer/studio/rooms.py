@@ -12,7 +12,8 @@ from .files import Files, Known
 
 GLTF = {".glb", ".gltf"}
 USD = {".usd", ".usda", ".usdc", ".usdz"}
-#: Endings of files that a room cannot do without: pictures and parts. Others, such as shaders of a program, are not used.
+#: Endings of files that a room cannot do without: pictures and parts. Others, such as shaders of a program, are not
+#: used.
 NEEDED = USD | {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".tiff", ".tga", ".bmp", ".webp"}
 
 

@@ -29,7 +29,7 @@ class Shot:
         self.is_dragged = False  # whether the camera of the photo comes from the dragged grid
         #: Photo and mask of the lights with the reshaped lamps, if there are any.
         self.edited: tuple[luxfer.Image, luxfer.Image] | None = None
-        #: The distance from the plane, and its error, before lamps were reshaped: they change size, and the room does not.
+        #: The distance from the plane, and its error, before lamps were reshaped: they change, and the room does not.
         self.kept_distance: tuple[float, float] | None = None
         #: Directions of the room axes and focal length of the dragged grid.
         self.camera_by_grid: tuple[list[list[float]], float] | None = None
