@@ -63,8 +63,8 @@ class LiveMasks:
 
     def follow(self, project: Project, thread: Latest[Any], show: Callable[[dict[str, luxfer.Image]], None]) -> None:
         """Computes the masks from the strokes of a project, and passes them to `show`; masks that cannot be computed
-        are missing. First come the masks by the features of the strokes before, then, if the new strokes have changed the
-        features, the masks by these."""
+        are missing. First come the masks by the features of the strokes before, then, if the new strokes have changed
+        the features, the masks by these."""
         strokes = strokes_of(self.context, project, self.size, self.share)
         if self.features is not None:
             show(self.segment(self.features[0], strokes, thread))

@@ -56,8 +56,8 @@ static double misfit(luxfer_scene *lit, uint32_t mesh, const luxfer_surface *sur
     return out;
 }
 
-/* Returns the mesh with the lamps of a surface. A transfer adds the meshes of its surfaces last; that of a surface fills
- * its rectangle best. */
+/* Returns the mesh with the lamps of a surface. A transfer adds the meshes of its surfaces last; that of a surface
+ * fills its rectangle best. */
 static uint32_t mesh_of(luxfer_scene *lit, const luxfer_surface *surface) {
     luxfer_scene_counts counts;
     uint32_t mesh, best = 0;
