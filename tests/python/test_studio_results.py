@@ -345,7 +345,7 @@ class Planes(Case):
         studio.shots[0].transfer = SimpleNamespace(scene=lambda which: room)
         whole = project.checked({"luxfer_studio": 1, "photo": {"name": "a.png", "sha256": "0" * 64}})
         studio.layouts = layout.layouts(whole, surface)
-        studio.choose_exposure()
+        studio.choose_exposure(whole)
         studio.measure(whole)
         return messages[-1], studio.exposure
 

@@ -123,6 +123,24 @@ class Preview(StudioCase):
         self.assertLess(min(times), bound)
         print(f"first picture of another view: {min(times):.2f} s of processor time, bound {bound:.2f} s")
 
+    def test_the_first_picture_does_not_wait_for_the_exposure(self):
+        pictures, steps = [], []
+
+        def seen(header):
+            if header["type"] == "picture":
+                pictures.append(header["exposure"])
+            if header["type"] == "step":
+                steps.append(header["name"])
+
+        self.edit(seen, exposure=None)
+        self.assertLess(steps.index("expose"), steps.index("first"))  # there is none before
+        before = pictures[-1]
+        pictures.clear(), steps.clear()
+        self.edit(seen, exposure=None, white=200.0)
+        self.assertLess(steps.index("first"), steps.index("expose"))
+        self.assertAlmostEqual(pictures[0], before / 2, delta=1e-9)
+        self.assertLess(abs(pictures[0] / pictures[-1] - 1), 0.1)  # and it was right
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -72,6 +72,7 @@ class Light:
         self.shown: dict[str, tuple[luxfer.Render, bool, float]] = {}
         self.last_reported = 0.0
         self.exposure = 1.0
+        self.exposed = (1.0, 1.0)  # the exposure that was chosen, and the white of the photo for which it was
         self.desks: dict[str, Any] = {}
         self.planned: dict[str, Any] = {}
         self.render: luxfer.Render | None = None
@@ -109,11 +110,15 @@ class Light:
         self.step("emission", patterns, lambda: self.make_textures(project))
         self.step("texture", surface, lambda: self.send_texture(surface))
         self.step("relight", [], lambda: self.relight(project))
-        self.step("expose", [], self.choose_exposure)
+        if "expose" in self.keys:  # light is proportional to the white, so the first picture need not wait
+            self.exposure = self.exposed[0] * self.exposed[1] / project["white"]
+        else:
+            self.step("expose", [], lambda: self.choose_exposure(project))
         self.step("mix", mixes, self.mix)
         self.step("lamps", surface, self.send_lamps)
         self.done["mix"] = project
         self.step("first", shot, lambda: self.first_picture(project, size))
+        self.step("expose", [], lambda: self.choose_exposure(project))
         self.step("lux", project["lux_plane"], lambda: self.measure(project))
         if compare != "off":
             self.step("before", [compare, *shot], lambda: self.first_before(project, size, compare))
@@ -309,10 +314,11 @@ class Light:
         )
         return measure.numbers(self.thread.finish(job))
 
-    def choose_exposure(self) -> None:
+    def choose_exposure(self, project: Project) -> None:
         """Chooses the exposure of the pictures by the work plane before lamps are dimmed, so dimmed light is darker."""
         self.desks = self.lux_on(work_plane(self.room, self.ceiling)[0], self.transfer.scene("lit"))
         self.exposure = exposure_for(self.desks["mean"])
+        self.exposed = self.exposure, project["white"]
 
     def measure(self, project: Project) -> None:
         """Computes and sends the illuminance of the plane that the project chooses."""
