@@ -24,6 +24,8 @@ def inner_grid(view, share=0.25):
 class StudioCase(Case):
     """A session of the studio without a server."""
 
+    FIRST_MS = 50
+
     def setUp(self):
         super().setUp()
         self.files = files.Files(self.folder / "state", security.Allowed())
@@ -35,7 +37,7 @@ class StudioCase(Case):
         self.addCleanup(self.session.close)
         # Save time: these tests do not need a good first picture either.
         settings = [(module, "RELIGHT", RELIGHT) for module in (light, program, program_c)]
-        for module, name, value in [*settings, (light, "FIRST_MS", 50)]:
+        for module, name, value in [*settings, (light, "FIRST_MS", self.FIRST_MS or light.FIRST_MS)]:
             patch = mock.patch.object(module, name, value)
             patch.start()
             self.addCleanup(patch.stop)

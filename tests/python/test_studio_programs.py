@@ -15,7 +15,7 @@ from support_studio import StudioCase, inner_grid
 
 from luxfer import _abi
 from luxfer._library import library
-from luxfer.studio import program, program_c, program_cpp, project
+from luxfer.studio import layout, program, program_c, program_cpp, project
 
 ROOT = Path(__file__).resolve().parents[2]
 CC, CXX = shutil.which("cc"), shutil.which("c++")
@@ -60,6 +60,9 @@ class Programs(StudioCase):
         for row, other in zip(rows, wanted):
             self.assertEqual(list(row), list(other))
             for name, value in other.items():
+                if name == "surface":
+                    self.assertEqual(row[name], value)
+                    continue
                 self.assertLess(abs(float(row[name]) - float(value)), 1e-5 * abs(float(value)) + 1e-6, name)
 
     def test_they_repeat_the_studio(self):
@@ -68,19 +71,35 @@ class Programs(StudioCase):
         self.edit(lambda header: seen.update({header["type"]: header}), strokes=strokes, until="view")
         grid = inner_grid(seen["view"])
         grid[0] += 1.5
+        wide = max(seen["shapes"]["list"], key=lambda lamp: lamp["at"][0])
+        after = np.reshape(wide["corners"], (4, 2))
+        after = (1.25 * (after - after.mean(0)) + after.mean(0) + (-3.0, 2.0)).ravel().tolist()
+        twice = {"at": wide["at"], "before": wide["corners"], "after": after}
         self.edit(
             strokes=strokes,
             removed=[on_lamp],
+            reshaped=[twice, {**twice, "at": [1.0, 1.0]}],  # there is no lamp in the corner
             grid=grid,
             zones=[[0.0, 0.0, 1.0, 1.5]],
             pattern={**self.project["pattern"], "offset": [0.25, 0.1], "rotation": 0.1},
             mix={"1": 0.375},
             added=[[1, 3.0, 2.0], [99, 1.0, 1.0]],  # there is no kind 99
+            surface="Ceiling",
+            others=[
+                {
+                    "surface": "Back wall",
+                    "pattern": {**self.project["pattern"], "scale": "lamp", "length": 0.4, "rotation": 0.3},
+                    "zones": [[0.5, 0.5, 1.0, 1.5]],
+                    "mix": {"0": 0.5},
+                    "added": [[1, 1.0, 1.0]],
+                },
+                {"surface": "Left wall", "pattern": self.project["pattern"], "zones": [], "mix": {}, "added": []},
+            ],
             white=150.0,
             camera={"position": [1.0, 1.5, 0.5], "target": [0.0, 1.25, 0.0], "fov_y": 1.1},
         )
         light = self.session.light
-        taken = [mask.numpy()[..., 0] > 0.5 for mask in (light.lights, light.transfer.image("lights-mask"))]
+        taken = [mask.numpy()[..., 0] > 0.5 for mask in (light.shot.lights, light.transfer.image("lights-mask"))]
         self.assertEqual([bool(mask[int(on_lamp[1]), int(on_lamp[0])]) for mask in taken], [True, False])
         picture = self.session.out("exr", self.folder)
         studio = {
@@ -107,13 +126,17 @@ class Programs(StudioCase):
     @unittest.skipUnless(CC and CXX, "there is no compiler")
     def test_a_program_has_only_the_parts_that_it_needs(self):
         camera = {"position": (0, 1, 2), "target": (0, 1, 0), "fov_y": 1.0}
-        names = "B\u00fcro.png", "it's \"here\"??/.png", "back\\slash.png"
-        for name, changes in zip(names, ({}, {"removed": [[1.0, 2.0]]}, {"mix": {"1": 0.5}})):
+        names = "B\u00fcro.png", "it's \"here\"??/.png", "back\\slash.png", "turned.png"
+        square = [0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0]
+        reshaped = [{"at": [0.5, 0.5], "before": square, "after": square}]
+        all_changes = {}, {"removed": [[1.0, 2.0]]}, {"mix": {"1": 0.5}}, {"reshaped": reshaped}
+        for name, changes in zip(names, all_changes):
             named = {"name": name, "sha256": "0" * 64}
             whole = project.checked({"luxfer_studio": 1, "photo": named, "room": named, **changes})
             for language, compile, mark in ((program_c, self.compile, "/* ["), (program_cpp, self.compile_cpp, "// [")):
-                text = language.program(whole, program.Chosen((72, 48), name, camera, 0.01))
+                text = language.program(whole, program.Chosen((72, 48), layout.layouts(whole, name), camera, 0.01))
                 self.assertEqual("take_out" in text, "removed" in changes)
+                self.assertEqual("reshape_lamps" in text, "reshaped" in changes)
                 self.assertEqual("mix_lamps" in text, "mix" in changes)
                 self.assertNotIn(mark, text)
                 source = self.folder / f"small{language.SOURCE.suffix}"

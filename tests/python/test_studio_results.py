@@ -16,7 +16,7 @@ from support import Case, context, demo, lit_room, luxfer, np
 from support_studio import StudioCase
 
 from luxfer.cli.plane import above_floor
-from luxfer.studio import measure, painting, pictures, program, project, results
+from luxfer.studio import layout, measure, painting, pictures, program, project, results
 from luxfer.studio.light import Light
 from luxfer.studio.room import work_plane
 from luxfer.studio.results import ENDINGS
@@ -262,7 +262,7 @@ class Programs(Case):
         named = {"name": "photo.png", "sha256": "0" * 64}
         whole = project.checked({"luxfer_studio": 1, "photo": named, **changes})
         camera = {"position": (0, 1, 2), "target": (0, 1, 0), "fov_y": 1.0}
-        return program.program(whole, program.Chosen((72, 48), changes.get("surface") or "Ceiling", camera, 0.01))
+        return program.program(whole, program.Chosen((72, 48), layout.layouts(whole, "Ceiling"), camera, 0.01))
 
     def test_names_are_those_of_the_files(self):
         for name in ("😀.png", "Büro.png", "it's \"here\".png", "back\\slash.png", "a\nb.png", "{brace}.png"):
@@ -271,20 +271,20 @@ class Programs(Case):
             values = {
                 node.targets[0].id: node.value for node in tree.body if isinstance(node, ast.Assign) and node.targets
             }
-            found = [values[n].orelse.value for n in ("photo_file", "room_file")] + [values["surface"].value]
+            found = [values[n].orelse.value for n in ("photo_file", "room_file")] + [values["surfaces"].elts[0].elts[0].value]
             self.assertEqual(found, [name] * 3)
 
     def test_what_was_taken_out_stays_out(self):
         zones, removed = [[0.0, 0.5, 1.0, 1.5]], [[12.0, 34.0]]
         text = self.text(zones=zones, removed=removed)
         ast.parse(text)
-        self.assertIn(f"transfer.set_zones({zones})", text)
+        self.assertIn(f", {zones}),\n", text)
         self.assertIn(f"without(mask, {removed}, ", text)
         self.assertNotIn("without(", self.text(zones=zones))
         for changes in ({"mix": {"1": 0.5}}, {"added": [[1, 2.0, 3.0]]}):
             text = self.text(**changes)
             ast.parse(text)
-            self.assertIn("mix.apply(transfer, *lamps)", text)
+            self.assertIn("mix.apply(placed)", text)
         self.assertNotIn("mix", self.text(mix={"1": 1.0}))
 
     def test_a_plan_has_only_the_settings_of_a_plan(self):
@@ -342,9 +342,11 @@ class Planes(Case):
         studio = Light(demo()[0], room, thread, lambda kind, **header: messages.append(header))
         room.add_light(kind="point", position=(0, 5, 0), intensity=(100, 100, 100))
         studio.lit = room
-        studio.transfer = SimpleNamespace(scene=lambda which: room)
-        studio.choose_exposure(surface)
-        studio.measure(project.checked({"luxfer_studio": 1, "photo": {"name": "a.png", "sha256": "0" * 64}}), surface)
+        studio.shots[0].transfer = SimpleNamespace(scene=lambda which: room)
+        whole = project.checked({"luxfer_studio": 1, "photo": {"name": "a.png", "sha256": "0" * 64}})
+        studio.layouts = layout.layouts(whole, surface)
+        studio.choose_exposure(whole)
+        studio.measure(whole)
         return messages[-1], studio.exposure
 
     def test_the_page_receives_the_height_above_the_floor(self):

@@ -7,8 +7,8 @@ import { dirname, join, resolve } from "node:path";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 
-const ROOT = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
-const PYTHON = process.env.LUXFER_STUDIO_PYTHON ?? join(ROOT, "target/peers/studio/bin/python");
+export const ROOT = resolve(dirname(fileURLToPath(import.meta.url)), "../..");
+export const PYTHON = process.env.LUXFER_STUDIO_PYTHON ?? join(ROOT, "target/peers/studio/bin/python");
 const CHROMIUM = process.env.LUXFER_CHROMIUM ?? "/usr/bin/chromium";
 /** Screenshots go here if it is set. */
 const PICTURES = process.env.LUXFER_STUDIO_PICTURES;

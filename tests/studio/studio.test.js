@@ -347,6 +347,24 @@ test("stylise: what is painted on the ball is painted on the picture", { skip },
   await page.waitForFunction((b) => document.body.dataset.painting && document.body.dataset.painting !== b, before);
   assert.ok(await page.locator("#artwork-own").isChecked());
   await picture(page, "8-stylise");
+
+  // By keys: a stroke, one that is given up, and undo.
+  const art = () => page.evaluate(() => document.getElementById("artwork").toDataURL());
+  const pointed = await art();
+  await page.locator("#artwork").focus();
+  await page.keyboard.press("Space");
+  for (let i = 0; i < 5; i++) await page.keyboard.press("ArrowLeft");
+  await picture(page, "8-stylise-keys");
+  await page.keyboard.press("Escape");
+  assert.equal(await art(), pointed);
+  await page.keyboard.press("Space");
+  for (let i = 0; i < 5; i++) await page.keyboard.press("ArrowDown");
+  const last = await state(page, "painting");
+  await page.keyboard.press("Space");
+  assert.notEqual(await art(), pointed);
+  await page.waitForFunction((b) => document.body.dataset.painting && document.body.dataset.painting !== b, last);
+  await page.keyboard.press("Control+z");
+  assert.equal(await art(), pointed);
   for (const width of [1440, 390]) {
     await page.setViewportSize({ width, height: 800 });
     const wide = await page.evaluate(() => document.documentElement.scrollWidth);

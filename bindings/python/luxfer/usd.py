@@ -69,6 +69,7 @@ class _Reader:
         if UsdGeom.GetStageUpAxis(stage) == UsdGeom.Tokens.z:
             self.world = self.world @ np.array(((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0), (0, 0, 0, 1)))
         self.materials: dict[str, int] = {}
+        self.uv_names: dict[int, str] = {}  # the texture coordinates of each material with textures
         self.textures: dict[tuple[Any, ...], int] = {}
         seen = UsdGeom.Tokens.default_, UsdGeom.Tokens.render
         prims = iter(Usd.PrimRange.Stage(stage, Usd.TraverseInstanceProxies()))
@@ -107,10 +108,24 @@ class _Reader:
         faces, triangles = fans(counts, turned)
         if not len(triangles):
             return
+        # Make one mesh of the faces of each subset that has its own material, and one of the remaining faces.
+        binding = UsdShade.MaterialBindingAPI(prim)
+        rest = np.ones(len(counts), bool)
+        groups = []
+        for subset in binding.GetMaterialBindSubsets():
+            chosen = np.zeros(len(counts), bool)
+            chosen[[i for i in subset.GetIndicesAttr().Get() or () if 0 <= i < len(counts)]] = True
+            groups.append((chosen & rest, subset.GetPrim()))
+            rest &= ~chosen
+        two_sided = bool(mesh.GetDoubleSidedAttr().Get())
+        parts = [(chosen[faces], owner) for chosen, owner in [*groups, (rest, prim)]]
+        parts = [(chosen, self.material(owner, two_sided)) for chosen, owner in parts if chosen.any()]
+
         normals = self.primvar(mesh, "normals", 3)
         if normals is None and mesh.GetNormalsAttr().HasAuthoredValue():
             normals = np.array(mesh.GetNormalsAttr().Get(), np.float64), mesh.GetNormalsInterpolation()
-        uvs = self.primvar(mesh, "st", 2)
+        names = [self.uv_names[material] for _, material in parts if material in self.uv_names]
+        uvs = self.primvar(mesh, names[0] if names else "st", 2)
 
         # Use one vertex per point or, if normals or texture coordinates differ between faces, one per corner of a
         # face.
@@ -126,28 +141,16 @@ class _Reader:
         if uvs is not None:
             uvs = np.stack((uvs[:, 0], 1 - uvs[:, 1]), 1)  # in USD, t points up
 
-        # Make one mesh of the faces of each subset that has its own material, and one of the remaining faces.
-        binding = UsdShade.MaterialBindingAPI(prim)
-        rest = np.ones(len(counts), bool)
-        groups = []
-        for subset in binding.GetMaterialBindSubsets():
-            chosen = np.zeros(len(counts), bool)
-            chosen[[i for i in subset.GetIndicesAttr().Get() or () if 0 <= i < len(counts)]] = True
-            groups.append((chosen & rest, subset.GetPrim()))
-            rest &= ~chosen
-        two_sided = bool(mesh.GetDoubleSidedAttr().Get())
-        for chosen, owner in [*groups, (rest, prim)]:
-            used = triangles[chosen[faces]]
-            if len(used):
-                kept, indices = np.unique(used, return_inverse=True)
-                self.scene.add_mesh(
-                    places[kept],
-                    indices.reshape(-1, 3).astype(np.uint32),
-                    normals=None if normals is None else normals[kept],
-                    uvs=None if uvs is None else uvs[kept],
-                    material=self.material(owner, two_sided),
-                    name=name,
-                )
+        for chosen, material in parts:
+            kept, indices = np.unique(triangles[chosen], return_inverse=True)
+            self.scene.add_mesh(
+                places[kept],
+                indices.reshape(-1, 3).astype(np.uint32),
+                normals=None if normals is None else normals[kept],
+                uvs=None if uvs is None else uvs[kept],
+                material=material,
+                name=name,
+            )
 
     def primvar(self, mesh: Any, name: str, width: int) -> tuple[NDArray[Any], str] | None:
         """The values of a primvar of a mesh, and their interpolation; None if the mesh lacks it."""
@@ -208,8 +211,21 @@ class _Reader:
             scale = glow.GetInput("scale").Get() if glow.GetInput("scale") else None
             if scale is not None:
                 self.scene.set_material(index, emission=tuple(scale)[:3])
+        for node in filter(None, (picture, glow)):  # the emission decides if they differ
+            self.uv_names[index] = self.coordinates(node)
         self.materials[key] = index
         return index
+
+    @staticmethod
+    def coordinates(node: Any) -> str:
+        """The primvar with the texture coordinates of a UsdUVTexture."""
+        from pxr import UsdShade
+
+        given = node.GetInput("st")
+        source = given.GetConnectedSources()[0] if given and given.HasConnectedSource() else []
+        name = UsdShade.Shader(source[0].source.GetPrim()).GetInput("varname") if source else None
+        values = name.GetValueProducingAttributes() if name else ()
+        return str(values[0].Get()) if values and values[0].Get() else "st"
 
     def texture(self, node: Any) -> int | None:
         """Adds the image of a UsdUVTexture; returns its index, or None if it has no image."""
@@ -379,7 +395,7 @@ def _write(scene: Scene, path: Path) -> None:
                 node.CreateInput(word, kinds.Token).Set(wrap.name.lower())
             reader = UsdShade.Shader.Define(stage, material.GetPath().AppendChild(f"{name}Reader"))
             reader.CreateIdAttr("UsdPrimvarReader_float2")
-            reader.CreateInput("varname", kinds.String).Set("st")
+            reader.CreateInput("varname", kinds.String).Set(st_name(use.uv_set, sets[index]))
             node.CreateInput("st", kinds.Float2).ConnectToSource(reader.ConnectableAPI(), "result")
             given.ConnectToSource(node.ConnectableAPI(), "rgb")
 
@@ -393,6 +409,7 @@ def _write(scene: Scene, path: Path) -> None:
             put("opacityThreshold", kinds.Float, float(settings["alpha_cutoff"]))
         return material
 
+    sets = [_uv_sets(scene, i) for i in range(scene.counts.materials)]
     materials = [surface(i) for i in range(scene.counts.materials)]
     for index, (name, used) in enumerate(_names(scene)):
         arrays = scene.mesh_arrays(index)
@@ -405,9 +422,13 @@ def _write(scene: Scene, path: Path) -> None:
         if "normals" in arrays:
             mesh.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(arrays["normals"]))
             mesh.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
-        if "uvs" in arrays:
-            flipped = np.ascontiguousarray(np.stack((arrays["uvs"][:, 0], 1 - arrays["uvs"][:, 1]), 1), np.float32)
-            st = primvars.CreatePrimvar("st", Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.vertex)
+        for uv_set in sets[used]:
+            uvs = arrays.get("uvs1" if uv_set else "uvs")
+            if uvs is None:
+                continue
+            flipped = np.ascontiguousarray(np.stack((uvs[:, 0], 1 - uvs[:, 1]), 1), np.float32)
+            name = st_name(uv_set, sets[used])
+            st = primvars.CreatePrimvar(name, Sdf.ValueTypeNames.TexCoord2fArray, UsdGeom.Tokens.vertex)
             st.Set(Vt.Vec2fArray.FromNumpy(flipped))
         mesh.CreateDoubleSidedAttr(bool(scene.material(used)["double_sided"]))
         UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(materials[used])
@@ -415,6 +436,17 @@ def _write(scene: Scene, path: Path) -> None:
         _write_camera(stage, f"/Scene/Camera{index}", scene.camera(index))
     if not stage.GetRootLayer().Export(str(path)):
         raise OSError(f"{path} could not be written")
+
+
+def _uv_sets(scene: Scene, material: int) -> list[int]:
+    """The sets of texture coordinates that the written textures of a material use; the first set without textures."""
+    uses = [scene.material_texture(material, role) for role in ("base-color", "emission")]
+    return sorted({use.uv_set for use in uses if use.texture < scene.counts.textures}) or [0]
+
+
+def st_name(uv_set: int, sets: list[int]) -> str:
+    """The primvar of a set of texture coordinates: st, and st1 beside it if the material uses two sets."""
+    return "st" if uv_set == sets[0] else "st1"
 
 
 def _names(scene: Scene) -> Iterator[tuple[str, int]]:

@@ -1,5 +1,7 @@
 // Vanishing lines and the grid of the plane, drawn over the photo.
 
+import { AXES, ON_PHOTO } from "./palette";
+
 export interface View {
   vanishing: [number, number, number][]; // homogeneous pixels
   support: number[];
@@ -13,12 +15,6 @@ export interface View {
   distance: number | null; // of the camera from the plane, in metres
 }
 
-/** The three axes differ by colour (Okabe and Ito) and by dashes. */
-const AXES = [
-  { colour: "#e69f00", dashes: [] },
-  { colour: "#009e73", dashes: [8, 4] },
-  { colour: "#cc79a7", dashes: [2, 4] },
-];
 /** Lines of each fan meet the photo's border at this distance, as a share of its width. */
 const FAN = 1 / 6;
 const FINITE = 1e-9;
@@ -81,7 +77,7 @@ export function drawGrid(context: CanvasRenderingContext2D, view: View, scale: n
   for (let y = 0; y <= height; y += step) line(path, view, [0, y], [width, y]);
   line(path, view, [width, 0], [width, height]);
   line(path, view, [0, height], [width, height]);
-  outlined(context, path, "#ffffff", [], scale);
+  outlined(context, path, ON_PHOTO.grid.colour, ON_PHOTO.grid.dashes, scale);
 }
 
 /** Pieces of a line of the grid, which a lens with distortion bends. */
@@ -110,4 +106,18 @@ export function inPhoto(view: View, [x, y]: [number, number]): [number, number] 
   let s = t < 0 ? 1 / (1 - t) : 1 + t + 3 * t * t;
   for (let i = 0; i < 7; i++) s -= (s * (1 - t * s * s) - 1) / (1 - 3 * t * s * s);
   return [cx + dx * s, cy + dy * s];
+}
+
+/** The place on the unwarped plane of a pixel of the photo: the inverse of inPhoto. */
+export function onPlane(view: View, [x, y]: [number, number]): [number, number] {
+  const [cx, cy, bend] = view.lens;
+  const [dx, dy] = [x - cx, y - cy];
+  const s = 1 - bend * (dx * dx + dy * dy);
+  const [px, py] = [cx + s * dx, cy + s * dy];
+  const [a, b, c, d, e, f, g, h, i] = view.to_photo!;
+  const w = (d * h - e * g) * px + (b * g - a * h) * py + (a * e - b * d);
+  return [
+    ((e * i - f * h) * px + (c * h - b * i) * py + (b * f - c * e)) / w,
+    ((f * g - d * i) * px + (a * i - c * g) * py + (c * d - a * f)) / w,
+  ];
 }

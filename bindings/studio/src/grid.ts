@@ -1,6 +1,7 @@
 // The grid of the plane, dragged by its corners and sides where the lines of the photo are wrong.
 
 import { drawVanishing, inPhoto, outlined, type View } from "./geometry";
+import { ON_PHOTO } from "./palette";
 
 type Point = [number, number];
 
@@ -103,7 +104,7 @@ export class Grid {
         path.lineTo(...until);
       }
     }
-    outlined(context, path, "#ffffff", [], scale);
+    outlined(context, path, ON_PHOTO.grid.colour, ON_PHOTO.grid.dashes, scale);
     this.corners.forEach((corner, i) => {
       context.beginPath();
       context.arc(...corner, HANDLE / scale, 0, 2 * Math.PI);

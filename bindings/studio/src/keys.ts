@@ -3,7 +3,7 @@
 import { make, showDialog } from "./dom";
 
 const KEYS: [string, string][] = [
-  ["1 2 3 4 5 6", "plane, not plane, light, not light, take out, grid"],
+  ["1 2 3 4 5 6 7", "plane, not plane, light, not light, take out, grid, shape"],
   ["[ and ]", "smaller and larger brush"],
   ["Ctrl+Z, Ctrl+Shift+Z", "undo, redo"],
   ["Ctrl+O", "open"],
@@ -13,7 +13,11 @@ const KEYS: [string, string][] = [
   ["Photo: Space", "start and end a stroke (Escape: no stroke)"],
   ["Photo: Enter", "a dot"],
   ["Photo, Grid: arrow keys", "move a corner of the grid; Space: the next corner"],
+  ["Photo, Shape: Space", "the next lamp; Delete: as it is in the photo"],
+  ["Photo, Shape: arrow keys", "move the lamp; with Shift: its width and its length; , and . turn it"],
   ["Photo: + and −", "zoom"],
+  ["Stylise: arrow keys", "move the brush, with Shift in small steps"],
+  ["Stylise: Space, Enter", "start and end a stroke (Escape: no stroke), a dot"],
   ["Room: arrow keys", "turn the view; with another tool, choose the ceiling, or shift, turn or size the lamps"],
   ["Room: + and −", "move the view"],
   ["Room: Home", "the room's own view"],

@@ -3,6 +3,7 @@
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
 import { rgbPicture } from "./masks";
+import { ON_PLAN } from "./palette";
 import type { Added } from "./project";
 import type { Spot } from "./room_view";
 import { dot, type Rectangle } from "./surface";
@@ -17,6 +18,13 @@ export interface Lamp {
   cct: number;
   added: number | null; // index among the lamps that the user has added
 }
+
+type Range = [number, number];
+
+/** Where the intervals come from. */
+const WHY =
+  "All lamps of the kind lie within. Size: the error of the photo's scale, and one texel. " +
+  "Light and colour: the noise of the solution; the white balance of the photo is taken as right";
 
 export type Zone = [number, number, number, number];
 
@@ -35,6 +43,8 @@ export class LampList {
   private texture: HTMLCanvasElement | null = null;
   private zones: Zone[] = [];
   private error = 0;
+  private kinds: Record<string, { size: [Range, Range]; cct: Range }> = {}; // bounds of the lamps of each kind
+  private others: { surface: string; lamps: number; flux: number }[] = []; // the lamps of other surfaces
   private fromTexture = new DOMMatrix(); // from shares of the texture to metres on the surface
   private mix: Record<string, number> = {};
   private added: Added[] = [];
@@ -55,6 +65,8 @@ export class LampList {
   setLamps(message: Message): void {
     this.lamps = message.list;
     this.error = message.error;
+    this.kinds = message.kinds;
+    this.others = message.others;
     const [[a, c, e], [b, d, f]] = message.to_texture as number[][];
     this.fromTexture = new DOMMatrix([a, b, c, d, e, f]).inverse();
     this.draw();
@@ -121,6 +133,9 @@ export class LampList {
         this.dimmer(kind),
       ]),
       ...(this.zones.length ? [this.taken()] : []),
+      ...this.others.map(({ surface, lamps, flux }) =>
+        make("p", { class: "quiet" }, `On ${surface}: ${lamps} lamps, ${short(flux)} lm`),
+      ),
     );
   }
 
@@ -135,7 +150,8 @@ export class LampList {
         "summary",
         {},
         make("b", {}, title),
-        ` · ${lamps.length} × ${size} · ${short(mean((l) => l.flux))} lm · ${10 * Math.round(mean((l) => l.cct) / 10)} K`,
+        ` · ${lamps.length} × ${size} · ${short(mean((l) => l.flux))} lm · ${kelvin(mean((l) => l.cct))} K`,
+        this.bounds(kind, mean((l) => l.flux)),
       ),
       make(
         "p",
@@ -145,6 +161,16 @@ export class LampList {
       ),
       make("ul", {}, ...lamps.map((lamp) => this.row(lamp))),
     );
+  }
+
+  /** The 95 % intervals of a kind. */
+  private bounds(kind: number, flux: number): HTMLElement {
+    const found = this.kinds[kind];
+    if (!found) return make("span");
+    const [length, width] = found.size.map(([low, high]) => `${short(low)}–${short(high)}`);
+    const [cold, hot] = found.cct.map(kelvin);
+    const text = `95 %: ${length} × ${width} m · ± ${short(this.error * flux)} lm · ${cold}–${hot} K`;
+    return make("span", { class: "bounds quiet", title: WHY }, text);
   }
 
   /** The next click on the plan adds a lamp of a kind; if a key starts this, the lamp is placed in the middle of the
@@ -243,7 +269,7 @@ export class LampList {
         context.fillStyle = "#fff1dc"; // the texture of the pattern does not have it
         context.fillRect(u0, v0, u1 - u0, v1 - v0);
       }
-      context.strokeStyle = "#56b4e9";
+      context.strokeStyle = ON_PLAN.lamp.colour;
       context.lineWidth = 2;
       context.strokeRect(u0, v0, u1 - u0, v1 - v0);
       if (lamp.kind) {
@@ -302,8 +328,8 @@ export class LampList {
 }
 
 function drawZone(context: CanvasRenderingContext2D, [u0, v0, u1, v1]: Zone): void {
-  context.strokeStyle = "#fff";
-  context.setLineDash([6, 5]);
+  context.strokeStyle = ON_PLAN["free place"].colour;
+  context.setLineDash(ON_PLAN["free place"].dashes);
   context.lineWidth = 2;
   context.strokeRect(u0, v0, u1 - u0, v1 - v0);
   context.beginPath();
@@ -313,6 +339,10 @@ function drawZone(context: CanvasRenderingContext2D, [u0, v0, u1, v1]: Zone): vo
   context.lineTo(u0, v1);
   context.stroke();
   context.setLineDash([]);
+}
+
+function kelvin(value: number): number {
+  return 10 * Math.round(value / 10);
 }
 
 function letter(kind: number): string {

@@ -2,22 +2,9 @@
 
 import type { Message } from "./api";
 import { byId, make, short } from "./dom";
+import { CIVIDIS } from "./palette";
 import type { LuxPlane } from "./project";
 
-/** Cividis by Nuñez, Anderton and Renslow, at eleven steps: dark blue to yellow. */
-const CIVIDIS = [
-  "#00224e",
-  "#083370",
-  "#35456c",
-  "#4f576c",
-  "#666970",
-  "#7d7c78",
-  "#948e77",
-  "#aea371",
-  "#c8b866",
-  "#e5cf52",
-  "#fee838",
-];
 /** Numbers in the plan stand at least this far apart, in pixels of the screen. */
 const NUMBER_STEP = 46;
 

@@ -15,9 +15,11 @@ import { PhotoView } from "./photo_view";
 import { PLAIN_LAMPS, type Project, type Store, type Stroke } from "./project";
 import { RoomTools } from "./room_tools";
 import { RoomView } from "./room_view";
+import type { Shape } from "./shapes";
 import { TOOLS, type Tool } from "./strokes";
 import { Stylise } from "./stylise";
 import { shiftBy } from "./surface";
+import { workOn } from "./surfaces";
 import { Trade } from "./trade";
 
 const STAGES: Record<string, string> = {
@@ -31,14 +33,17 @@ const STAGES: Record<string, string> = {
   compare: "rendering the light to compare with",
 };
 
+/** Tools whose hint stays after the first stroke. */
+const WITH_HINT = new Set<Tool>(["remove", "grid", "shape"]);
+
 /** Stages of the other tab; the last one ends its work. */
 const OF_STYLISE = new Set(["guides", "painting", ""]);
 
 /** Entries of the project that belong to a photo and mean nothing in another photo. */
-const EMPTY_PHOTO = { strokes: [], removed: [], grid: null };
+const EMPTY_PHOTO = { strokes: [], removed: [], reshaped: [], grid: null };
 
 /** Entries of the project that belong to a room and mean nothing in another room. */
-const EMPTY_ROOM = { surface: null, ...PLAIN_LAMPS, lux_plane: { surface: null, height: 0.75 }, camera: null };
+const EMPTY_ROOM = { surface: null, ...PLAIN_LAMPS, others: [], lux_plane: { surface: null, height: 0.75 }, camera: null };
 
 export class Page {
   readonly photo = new PhotoView();
@@ -57,6 +62,7 @@ export class Page {
   private rounds = 0; // masks at the full size that have come
   private sent = new Map<number, number>(); // when each version was sent
   private autoExposure: number | null = null;
+  private shapes: Shape[] = []; // the lamps of the photo as the server finds them
 
   constructor(
     readonly store: Store,
@@ -99,6 +105,7 @@ export class Page {
     this.photo.strokes = project.strokes;
     this.photo.removed = project.removed;
     this.photo.setGrid(project.grid);
+    this.showShapes();
     byId("grid-found").hidden = !project.grid;
     this.photo.redraw();
     this.lamps.setProject(project);
@@ -125,8 +132,19 @@ export class Page {
     };
     photo.onRemove = (at) => {
       const place = at.map((x) => Math.round(10 * x) / 10) as [number, number];
-      store.change(`remove ${store.project.removed.length}`, { removed: [...store.project.removed, place] });
+      const { removed, reshaped } = store.project;
+      const moved = photo.shapes.changedAt(at); // a lamp is known by its place in the photo
+      store.change(`remove ${removed.length}`, {
+        removed: [...removed, moved?.at ?? place],
+        reshaped: reshaped.filter((r) => r !== moved),
+      });
     };
+    photo.shapes.onChange = (reshaped, isStep) =>
+      store.change(isStep ? "reshape" : `reshape ${performance.now()}`, { reshaped });
+    photo.shapes.onSelect = (change) => this.showShape(change);
+    byId("shape-restore").onclick = () => photo.shapes.restore();
+    byId<HTMLInputElement>("shape-alike").onchange = (e) =>
+      (photo.shapes.isForAlike = (e.target as HTMLInputElement).checked);
     photo.grid.onChange = (grid) => store.change("grid", { grid });
     byId("grid-found").onclick = () => store.change("grid found", { grid: null });
     room.onCamera = (camera) => store.change("camera", { camera });
@@ -139,7 +157,11 @@ export class Page {
     this.pattern.onChange = (what, patch) => store.change(what, patch);
     this.roomTools.pattern = () => store.project.pattern;
     this.roomTools.onPattern = (what, pattern) => store.change(what, { pattern });
-    this.roomTools.onSurface = (surface) => store.change("surface", { surface, ...PLAIN_LAMPS });
+    this.roomTools.onSurface = (surface, before) => {
+      const isLit = store.project.others.some((other) => other.surface === surface);
+      const patch = isLit ? workOn(store.project, before, surface) : { surface, ...PLAIN_LAMPS };
+      store.change("surface", patch);
+    };
     this.roomTools.onRefused = notice;
     this.lux.onPlane = (plane) => store.change("plane", { lux_plane: plane });
     this.lux.onFactor = (factor) => {
@@ -264,7 +286,7 @@ export class Page {
   private choose(tool: Tool): void {
     byId<HTMLInputElement>(`tool-${tool}`).checked = true;
     this.photo.tool = tool;
-    this.photo.redraw();
+    this.showShapes();
     this.hint();
   }
 
@@ -272,7 +294,7 @@ export class Page {
   private hint(): void {
     const { tool, label, hint } = TOOLS.find((t) => t.tool === this.photo.tool)!;
     byId("hint").textContent = `${label}: ${hint}`;
-    byId("hint").hidden = this.store.project.strokes.length > 0 && tool !== "remove" && tool !== "grid";
+    byId("hint").hidden = this.store.project.strokes.length > 0 && !WITH_HINT.has(tool);
   }
 
   private open(project: Project, isWhole = false): void {
@@ -328,6 +350,7 @@ export class Page {
       room: () => this.takeRoom(message),
       masks: () => this.takeMasks(message, payload),
       doubt: () => this.notes.setDoubt(message),
+      shapes: () => (this.shapes = message.list),
       view: () => this.takeView(message),
       warnings: () => this.takeWarnings(message),
       texture: () => this.takeTexture(message, payload),
@@ -446,8 +469,24 @@ export class Page {
   private takeView(message: Message): void {
     this.photo.view = { ...(message as any), distance: null };
     this.photo.setGrid(this.store.project.grid);
+    this.showShapes();
     document.body.dataset.grid = message.dragged ? "dragged" : "found";
     document.body.dataset.vanishing = message.vanishing.flat().map((x: number) => x.toFixed(4)).join(" ");
+  }
+
+  private showShapes(): void {
+    this.photo.shapes.set(this.shapes, this.store.project.reshaped, this.photo.view);
+    this.photo.redraw();
+  }
+
+  /** Says how the selected lamp differs from the lamp of the photo. */
+  private showShape(change: { sides: [number, number]; angle: number } | null): void {
+    byId("shape-row").hidden = this.photo.tool !== "shape";
+    byId<HTMLButtonElement>("shape-restore").disabled = !this.photo.shapes.isChanged;
+    const sides = change?.sides.map((x) => Math.round(100 * x)).join(" × ");
+    const angle = change ? Math.round((change.angle * 180) / Math.PI) : 0;
+    byId("shape-size").textContent = change ? `${sides} %${angle ? `, ${angle}°` : ""}` : "no lamp";
+    this.photo.redraw();
   }
 
   private takeTexture(message: Message, payload: Uint8Array): void {

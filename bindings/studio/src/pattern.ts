@@ -4,6 +4,7 @@ import type { Message } from "./api";
 import { byId, make, short } from "./dom";
 import { PLAIN_LAMPS, type Pattern, type Project } from "./project";
 import type { Candidate } from "./room_tools";
+import { SurfaceList } from "./surfaces";
 
 const SCALES: [Pattern["scale"], string][] = [
   ["distance", "as in the photo"],
@@ -31,7 +32,9 @@ export class PatternForm {
   private readonly whole = make("input", { type: "checkbox", id: "whole" });
   private readonly white = number("white", 1, 100000, 1);
   private readonly proposal = make("p", { class: "quiet row" });
+  readonly surfaces = new SurfaceList();
   private candidates: Candidate[] = [];
+  private names: string[] = []; // of all objects
   private project: Project | null = null;
   private isTurn = false;
   onChange: (what: string, patch: Partial<Project>) => void = () => {};
@@ -40,7 +43,8 @@ export class PatternForm {
     const row = (label: string, input: HTMLElement, unit = "") =>
       make("label", { class: "field" }, make("span", {}, label), input, make("span", { class: "unit" }, unit));
     this.box.append(
-      row("Ceiling", this.surface),
+      this.surfaces.box,
+      row("Surface", this.surface),
       this.reason,
       row("Size", this.scale),
       row("Length", this.length, "m"),
@@ -52,6 +56,7 @@ export class PatternForm {
       this.proposal,
     );
     this.surface.onchange = () => this.onChange("surface", { surface: this.surface.value, ...PLAIN_LAMPS });
+    this.surfaces.onChange = (what, patch) => this.onChange(what, patch);
     for (const [input, name] of [
       [this.scale, "scale"],
       [this.length, "length"],
@@ -80,11 +85,8 @@ export class PatternForm {
 
   setCandidates(message: Message): void {
     this.candidates = message.candidates;
-    this.surface.replaceChildren(
-      ...this.candidates.map((c) =>
-        make("option", { value: c.name }, c.kind === "material" ? `${c.name} (material)` : c.name),
-      ),
-    );
+    this.names = message.surfaces;
+    this.surfaces.setNames(this.names);
     if (this.project) this.show(this.project);
   }
 
@@ -92,7 +94,9 @@ export class PatternForm {
     this.project = project;
     const { pattern } = project;
     const name = project.surface ?? this.candidates[0]?.name ?? "";
+    this.offer(project.others.map((other) => other.surface));
     this.surface.value = name;
+    this.surfaces.show(project, name);
     this.reason.textContent = this.candidates.find((c) => c.name === name)?.reason ?? "";
     this.scale.value = pattern.scale;
     this.length.value = String(pattern.length);
@@ -112,12 +116,27 @@ export class PatternForm {
     }
   }
 
+  /** The surfaces that the lamps can move to: the likely ceilings first. */
+  private offer(taken: string[]): void {
+    const isFree = (name: string) => !taken.includes(name);
+    const likely = this.candidates.filter((c) => isFree(c.name));
+    const rest = this.names.filter((name) => isFree(name) && !likely.some((c) => c.name === name));
+    const options = (names: [string, string][]) => names.map(([value, text]) => make("option", { value }, text));
+    const title = (c: Candidate) => (c.kind === "material" ? `${c.name} (material)` : c.name);
+    this.surface.replaceChildren(
+      ...options(likely.map((c) => [c.name, title(c)])),
+      ...(rest.length
+        ? [make("optgroup", { label: "Other objects" }, ...options(rest.map((name) => [name, name])))]
+        : []),
+    );
+  }
+
   /** The library's estimates for the photo: the distance of its camera, and a likely luminance of its white. */
   setEstimates(message: Message): void {
     const [value, low, high] = message.proposed_white as number[];
     const distance = Number.isFinite(message.distance)
-      ? `The photo's camera is taken to be ${short(message.distance)} m from the ceiling ` +
-        `(± ${Math.round(100 * message.distance_error)} %). `
+      ? `The photo's camera is taken to be ${short(message.distance)} m ` +
+        `(${(message.distance_range as number[]).map(short).join(" to ")} m) from the plane of the lamps. `
       : "";
     const isSame = Math.abs((this.project?.white ?? 0) - value) < 0.6;
     this.proposal.replaceChildren(

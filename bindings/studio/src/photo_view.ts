@@ -5,6 +5,7 @@ import { drawCross, drawMark, type Mark } from "./marks";
 import type { Kind, Stroke } from "./project";
 import { drawGrid, drawVanishing, type View } from "./geometry";
 import { Grid } from "./grid";
+import { Shapes } from "./shapes";
 import { drawStroke, lookOf, Pen, type Tool } from "./strokes";
 
 export interface Lamp {
@@ -25,6 +26,7 @@ export class PhotoView {
   private centre: [number, number] = [0.5, 0.5]; // of the photo, as shares
   private readonly pen = new Pen();
   readonly grid = new Grid();
+  readonly shapes = new Shapes();
   private readonly pointers = new Map<number, [number, number]>();
   private cursor: [number, number] | null = null;
   private isKeyboard = false;
@@ -68,7 +70,7 @@ export class PhotoView {
     this.picture = picture;
     this.size = size;
     this.masks = this.view = null;
-    this.grid.end(false);
+    this.handles.forEach((h) => h.end(false));
     this.zoom = 1;
     this.centre = [0.5, 0.5];
     this.canvas.dataset.width = String(size[0]);
@@ -80,6 +82,11 @@ export class PhotoView {
   setGrid(corners: number[] | null): void {
     this.grid.set(corners, this.view, this.size);
     this.redraw();
+  }
+
+  /** The parts of the photo that have handles. */
+  private get handles() {
+    return [this.grid, this.shapes];
   }
 
   /** The brush's radius in thousandths of the photo's width. */
@@ -149,7 +156,8 @@ export class PhotoView {
     }
     const at = this.toPhoto(event);
     if (this.tool === "remove") this.onRemove(at);
-    else if (this.tool === "grid") this.grid.begin(at, this.place().scale, event.pointerType === "touch");
+    else if (this.tool === "grid" || this.tool === "shape")
+      this[this.tool === "grid" ? "grid" : "shapes"].begin(at, this.place().scale, event.pointerType === "touch");
     else {
       this.pen.begin(this.tool as Kind, this.radius * pressure(event), ...at);
       this.onDraft(this.pen.stroke);
@@ -163,7 +171,7 @@ export class PhotoView {
     this.cursor = this.toPhoto(event);
     if (before) {
       if (this.pointers.size > 1) this.pinch(event, before);
-      else if (this.grid.isHeld) this.grid.drag(this.cursor, this.size);
+      else if (this.handles.some((h) => h.isHeld)) this.handles.forEach((h) => h.drag(this.cursor!, this.size));
       else if (this.pen.stroke) {
         let isNew = false;
         for (const e of event.getCoalescedEvents?.() ?? [event])
@@ -187,7 +195,7 @@ export class PhotoView {
 
   private up(event: PointerEvent, isCancelled = false): void {
     this.pointers.delete(event.pointerId);
-    this.grid.end(!isCancelled);
+    this.handles.forEach((h) => h.end(!isCancelled));
     if (this.pen.stroke) this.finish(!isCancelled);
     this.redraw();
   }
@@ -205,7 +213,7 @@ export class PhotoView {
   /** Ends a stroke, and keeps or discards it. */
   private finish(counts: boolean): void {
     this.isPenDown = false;
-    this.grid.end(counts);
+    this.handles.forEach((h) => h.end(counts));
     const stroke = this.pen.end();
     if (stroke && counts) this.onStroke(stroke);
     else if (stroke) this.onDraft(null);
@@ -224,7 +232,12 @@ export class PhotoView {
       ArrowDown: [0, step],
     };
     this.cursor ??= [this.size[0] / 2, this.size[1] / 2];
-    if (this.tool === "grid" && (moves[event.key] || event.key === " " || event.key === "Enter")) {
+    if (this.tool === "shape") {
+      const [dx, dy] = (moves[event.key] ?? [0, 0]).map((d) => d / 5) as [number, number];
+      const isZoom = event.key === "+" || event.key === "-" || event.key === "=";
+      if (isZoom) this.zoomBy(event.key === "-" ? 1 / ZOOM_STEP : ZOOM_STEP, this.cursor);
+      else if (!this.shapes.key(event, [dx, dy])) return;
+    } else if (this.tool === "grid" && (moves[event.key] || event.key === " " || event.key === "Enter")) {
       // A step is a fifth of a step of the brush, so that corners can be set exactly.
       const [dx, dy] = (moves[event.key] ?? [0, 0]).map((d) => d / 5);
       if (moves[event.key]) this.grid.step(dx, dy, this.size);
@@ -269,6 +282,7 @@ export class PhotoView {
       canvas.height = Math.round(height * ratio);
     }
     document.body.dataset.corners = this.grid.numbers.join(" ");
+    document.body.dataset.shapes = JSON.stringify(this.shapes.outlines);
     const context = canvas.getContext("2d")!;
     context.setTransform(1, 0, 0, 1, 0, 0);
     context.clearRect(0, 0, canvas.width, canvas.height);
@@ -291,6 +305,7 @@ export class PhotoView {
     if (this.tool === "remove") this.drawLamps(context, scale);
     for (const at of this.removed) drawCross(context, at, 9 / scale);
     if (isGridTool) this.grid.draw(context, this.size, scale, this.isKeyboard);
+    if (this.tool === "shape") this.shapes.draw(context, scale);
     context.restore();
     this.marks.forEach((mark) => drawMark(context, mark, scale));
     this.drawCursor(context, scale);
@@ -315,7 +330,7 @@ export class PhotoView {
   }
 
   private drawCursor(context: CanvasRenderingContext2D, scale: number): void {
-    if (!this.cursor || this.tool === "grid" || (this.isKeyboard && document.activeElement !== this.canvas)) return;
+    if (!this.cursor || this.tool === "grid" || this.tool === "shape" || (this.isKeyboard && document.activeElement !== this.canvas)) return;
     const radius = this.tool === "remove" ? 6 / scale : Math.max(this.radius, 2 / scale);
     for (const [colour, wide] of [
       ["#000", 3],

@@ -9,6 +9,13 @@ export interface Stroke {
   points: number[]; // x, y, x, y, ... in pixels of the photo
 }
 
+/** A lamp of the photo that was moved, resized or turned: a pixel on it, and its corners before and after. */
+export interface Reshaped {
+  at: [number, number];
+  before: number[];
+  after: number[];
+}
+
 export interface FileName {
   name: string;
   sha256: string;
@@ -36,18 +43,29 @@ export interface LuxPlane {
 /** A copy of a lamp of this kind, at u and v in metres on the surface. */
 export type Added = [number, number, number];
 
+/** The lamps of a further surface. */
+export interface Layout {
+  surface: string;
+  pattern: Pattern;
+  zones: [number, number, number, number][];
+  mix: Record<string, number>;
+  added: Added[];
+}
+
 export interface Project {
   luxfer_studio: number;
   photo: FileName;
   room: FileName | null;
   strokes: Stroke[];
   removed: [number, number][];
+  reshaped: Reshaped[];
   grid: number[] | null; // x and y in the photo of the corners of a rectangle on the plane
   zones: [number, number, number, number][];
   surface: string | null;
   pattern: Pattern;
   mix: Record<string, number>; // the factor of each kind of lamp
   added: Added[];
+  others: Layout[];
   lux_plane: LuxPlane;
   white: number;
   camera: Camera | null;
@@ -58,6 +76,9 @@ export interface Project {
 
 /** The lamps of a surface before anybody has changed them. */
 export const PLAIN_LAMPS: Pick<Project, "zones" | "mix" | "added"> = { zones: [], mix: {}, added: [] };
+
+/** The pattern of a surface before anybody has changed it. */
+export const PLAIN_PATTERN: Pattern = { scale: "distance", length: 1.2, rotation: 0, offset: [0, 0], keep_whole: false };
 
 /** Changes of one entry within this time, such as by a slider, are undone together. */
 const TOGETHER_MS = 800;
@@ -169,7 +190,7 @@ function forgetOldest(except: string): void {
 /** Whether a project has any content worth keeping. */
 export function hasWork(project: Project): boolean {
   return (
-    project.strokes.length + project.removed.length + project.zones.length + (project.added ?? []).length > 0 ||
+    project.strokes.length + project.removed.length + (project.reshaped ?? []).length + project.zones.length + (project.added ?? []).length + (project.others ?? []).length > 0 ||
     Boolean(project.grid)
   );
 }

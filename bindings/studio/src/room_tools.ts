@@ -51,7 +51,8 @@ export class RoomTools {
     throw new Error("not set");
   };
   onPattern: (what: string, pattern: Pattern) => void = () => {};
-  onSurface: (name: string) => void = () => {};
+  /** Chooses a surface; `before` is the present one. */
+  onSurface: (name: string, before: string) => void = () => {};
   onRefused: (why: string) => void = () => {};
 
   constructor(
@@ -205,8 +206,9 @@ export class RoomTools {
 
   /** Chooses a surface; takes effect before the next click or key. */
   private take(name: string): void {
+    const before = this.chosen;
     this.chosen = name;
-    this.onSurface(name);
+    this.onSurface(name, before);
     this.room.drawMarks();
   }
 

@@ -1,8 +1,9 @@
 // Strokes: their look, and painting with mouse, pen, touch and keys.
 
+import { ON_PHOTO } from "./palette";
 import type { Kind, Stroke } from "./project";
 
-export type Tool = Kind | "remove" | "grid";
+export type Tool = Kind | "remove" | "grid" | "shape";
 
 export interface ToolLook {
   tool: Tool;
@@ -12,23 +13,28 @@ export interface ToolLook {
   dashes: number[]; // of the line in the middle of the stroke: the kinds differ without their colours too
 }
 
-/** Colours by Okabe and Ito, which people with any colour vision tell apart. */
 export const TOOLS: ToolLook[] = [
-  { tool: "plane", label: "Plane", hint: "paint on the ceiling, or on another plane with lamps", colour: "#56b4e9", dashes: [] },
-  { tool: "not-plane", label: "Not plane", hint: "paint on walls, floor and furniture", colour: "#d55e00", dashes: [7, 5] },
-  { tool: "light", label: "Light", hint: "paint on lamps that shine", colour: "#f0e442", dashes: [] },
+  { tool: "plane", label: "Plane", hint: "paint on the ceiling, or on another plane with lamps", ...ON_PHOTO.plane },
+  { tool: "not-plane", label: "Not plane", hint: "paint on walls, floor and furniture", ...ON_PHOTO["not-plane"] },
+  { tool: "light", label: "Light", hint: "paint on lamps that shine", ...ON_PHOTO.light },
   {
     tool: "not-light",
     label: "Not light",
     hint: "paint on the ceiling beside the lamps",
-    colour: "#cc79a7",
-    dashes: [2, 5],
+    ...ON_PHOTO["not-light"],
   },
   { tool: "remove", label: "Take out", hint: "click a lamp of the photo", colour: "#ffffff", dashes: [] },
   {
     tool: "grid",
     label: "Grid",
     hint: "drag its corners onto a rectangle of the ceiling, such as tiles",
+    colour: "#ffffff",
+    dashes: [],
+  },
+  {
+    tool: "shape",
+    label: "Shape",
+    hint: "click a lamp; drag it, its corners, its sides or its knob",
     colour: "#ffffff",
     dashes: [],
   },

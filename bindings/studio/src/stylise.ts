@@ -14,6 +14,8 @@ const EXAMPLES: [string, string][] = [
 /** Where the browser keeps the latest artwork of the user, of any tab. */
 const KEPT = "luxfer-studio-artwork";
 const MAX_UNDO = 30;
+/** The keyboard's brush moves by this many pixels of the artwork. */
+const KEY_STEP = 10;
 
 export class Stylise {
   private readonly art = byId<HTMLCanvasElement>("artwork");
@@ -23,6 +25,8 @@ export class Stylise {
   private last: [number, number] | null = null;
   private isSent = false; // whether this server has the user's own artwork
   private isShown = false;
+  private cursor: [number, number] = [SIZE[0] / 2, SIZE[1] / 2]; // of the keyboard
+  private isByKeys = false;
   send: (message: Message) => void = () => {};
 
   constructor(private readonly session: string) {
@@ -39,6 +43,13 @@ export class Stylise {
     this.art.onpointerdown = (e) => this.begin(e);
     this.art.onpointermove = (e) => this.move(e);
     this.art.onpointerup = this.art.onpointercancel = () => this.end();
+    this.art.onkeydown = (e) => this.key(e);
+    this.art.onfocus = () => this.showCursor();
+    this.art.onblur = () => {
+      this.end();
+      this.showCursor();
+    };
+    byId("artwork-brush").addEventListener("input", () => this.showCursor());
     this.restore();
   }
 
@@ -143,14 +154,61 @@ export class Stylise {
   }
 
   private begin(event: PointerEvent): void {
-    this.remember();
+    this.isByKeys = false;
+    this.showCursor();
     this.art.setPointerCapture(event.pointerId);
-    this.last = this.at(event);
-    this.stroke(this.last);
+    this.press(this.at(event));
+  }
+
+  private press(at: [number, number]): void {
+    this.remember();
+    this.last = at;
+    this.stroke(at);
   }
 
   private move(event: PointerEvent): void {
-    if (this.last) this.stroke(this.at(event));
+    if (this.last && !this.isByKeys) this.stroke(this.at(event));
+  }
+
+  // -- the brush by keys
+
+  private key(event: KeyboardEvent): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const step = event.shiftKey ? KEY_STEP / 5 : KEY_STEP;
+    const moves: Record<string, [number, number]> = {
+      ArrowLeft: [-step, 0],
+      ArrowRight: [step, 0],
+      ArrowUp: [0, -step],
+      ArrowDown: [0, step],
+    };
+    const by = moves[event.key];
+    if (by) {
+      this.cursor = this.cursor.map((x, i) => Math.min(SIZE[i], Math.max(0, x + by[i]))) as [number, number];
+      if (this.last) this.stroke(this.cursor);
+    } else if (event.key === " " || event.key === "Enter") {
+      const isOver = this.last !== null;
+      if (!isOver) this.press(this.cursor);
+      if (isOver || event.key === "Enter") this.end();
+    } else if (event.key === "Escape" && this.last) {
+      this.last = null;
+      this.context.putImageData(this.past.pop()!, 0, 0);
+    } else return;
+    this.isByKeys = true;
+    event.preventDefault();
+    this.showCursor();
+  }
+
+  /** Shows where the brush is, while keys move it. */
+  private showCursor(): void {
+    const ring = byId("artwork-cursor");
+    ring.hidden = document.activeElement !== this.art || !this.art.matches(":focus-visible");
+    const side = (Number(byId<HTMLInputElement>("artwork-brush").value) / SIZE[0]) * this.art.clientWidth;
+    Object.assign(ring.style, {
+      left: `${(100 * this.cursor[0]) / SIZE[0]}%`,
+      top: `${(100 * this.cursor[1]) / SIZE[1]}%`,
+      width: `${side}px`,
+      height: `${side}px`,
+    });
   }
 
   private stroke(to: [number, number]): void {

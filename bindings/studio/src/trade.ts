@@ -58,7 +58,11 @@ export class Trade {
 
   setPlan(message: Message): void {
     this.plan = { noise: message.noise, seconds: message.seconds, error: message.error };
-    this.planned.textContent = `Planned: ${seconds(message.seconds)}, and ${percent(message.error)} of noise remain.`;
+    const time = (message.seconds_range as number[]).map(seconds).join(" to ");
+    const noise = (message.error_range as number[]).map(percent).join(" to ");
+    this.planned.textContent =
+      `Planned: ${seconds(message.seconds)} (${time}), and ${percent(message.error)} (${noise}) of noise remain. ` +
+      "More than 9 of 10 plans keep to these brackets, if other programs do not become busier.";
     this.planned.dataset.seconds = String(message.seconds);
   }
 

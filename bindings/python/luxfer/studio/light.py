@@ -10,17 +10,19 @@ import json
 import math
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import luxfer
 import numpy as np
 
 from ..cli.plane import Plane
-from . import grid, measure, mix, pictures
+from . import intervals, layout, measure, mix, pictures
 from .jobs import Latest
-from .live import strokes_of
+from .layout import Layout
 from .project import Project
-from .room import bounds, exposure_for, rectangle, texture_settings, work_plane
+from .room import bounds, exposure_for, rectangle, work_plane
+from .shot import Shot, send_warnings
 
 #: Settings of every relighting. They do not depend on time, so that a project always gives the same light.
 RELIGHT = {"target_error": 0.02, "paths": 1 << 18}
@@ -30,15 +32,20 @@ FIRST_PIXELS, FIRST_MS = 36_000, 350
 REFRESH_SECONDS = 0.5
 #: More paths per pixel than any picture gets: the time ends the rendering.
 MAX_SAMPLES = 1 << 16
+#: Stages whose warnings concern one surface of the room.
+OF_ROOM = (luxfer.types.Stage.EMISSION, luxfer.types.Stage.RELIGHT)
 #: The step whose result each step needs.
 AFTER = {
     "view": "",
     "masks": "view",
     "unwarp": "masks",
-    "emission": "unwarp",
+    "others": "unwarp",
+    "emission": "others",
+    "texture": "emission",
     "relight": "emission",
     "expose": "relight",
     "mix": "relight",
+    "lamps": "mix",
     "lux": "mix",
     "first": "mix",
     "before": "mix",
@@ -47,8 +54,6 @@ AFTER = {
     "picture": "first",
     "compared": "mix",
 }
-#: Maximum distance of a point from the lamp that it selects, as a share of the photo's width.
-MAX_LAMP_DISTANCE = 0.015
 
 
 class Light:
@@ -58,38 +63,63 @@ class Light:
         self.context, self.photo, self.room = photo.context, photo, room
         self.thread, self.send = thread, send
         self.surface = room.candidates[0].name if room.candidates else ""
-        self.transfer = luxfer.Transfer(self.context, photo)
+        self.shot = Shot(photo, thread, send)
+        #: A shot for each surface that receives lamps; only the first one tells the page what it sees.
+        self.shots = [self.shot]
+        self.layouts: list[Layout] = []
+        self.active = 0
         self.keys: dict[str, str] = {}
         self.shown: dict[str, tuple[luxfer.Render, bool, float]] = {}
         self.last_reported = 0.0
         self.exposure = 1.0
+        self.exposed = (1.0, 1.0)  # the exposure that was chosen, and the white of the photo for which it was
         self.desks: dict[str, Any] = {}
         self.planned: dict[str, Any] = {}
-        self.is_replaced = False  # whether the mask of the lights is not the library's own
-        self.is_dragged = False  # whether the camera of the photo comes from the dragged grid
-        #: Directions of the room axes and focal length of the dragged grid.
-        self.camera_by_grid: tuple[list[list[float]], float] | None = None
-        self.lights: luxfer.Image | None = None
         self.render: luxfer.Render | None = None
         #: For each step that files need, the project object to which its result belongs.
         self.done: dict[str, Project] = {}
 
+    @property
+    def transfer(self) -> luxfer.Transfer:
+        """The transfer of the surface on which the user works."""
+        return self.shots[self.active].transfer
+
+    @property
+    def ceiling(self) -> str:
+        """The surface below which the illuminance is computed: the first one with a floor below it."""
+        names = [one.surface for one in self.layouts]
+        return next((name for name in names if not work_plane(self.room, name)[1]), names[0])
+
+    def placed(self) -> list[layout.Placed]:
+        return layout.place_all(self.room, [shot.transfer for shot in self.shots], self.layouts)
+
     def follow(self, project: Project, size: tuple[int, int], compare: str) -> None:
         """Runs all outdated steps and sends each result to the page."""
-        surface = project["surface"] or self.surface
+        self.layouts = layout.layouts(project, self.surface)
+        self.active = layout.active(project, self.layouts, self.surface)
+        surface = self.layouts[self.active].surface
         # The library solves for the strength of the texture as it was placed, so both stages need the same white.
-        pattern = [surface, project["pattern"], project["zones"], project["white"]]
-        shot = [project["camera"], size]
-        self.step("view", [], self.find_view)
-        self.step("masks", project["strokes"], lambda: self.make_masks(project))
-        self.step("unwarp", [project["removed"], project["grid"]], lambda: self.unwarp(project))
-        self.step("emission", pattern, lambda: self.make_texture(project, surface))
+        patterns = [[one[:3] for one in self.layouts], project["white"]]
+        mixes = [[one.mix, one.added] for one in self.layouts]
+        shot, photo = [project["camera"], size], self.shot
+        self.step("view", [], photo.find_view)
+        self.step("masks", project["strokes"], lambda: photo.make_masks(project))
+        edits = [project["removed"], project["grid"], project["reshaped"]]
+        self.step("unwarp", edits, lambda: photo.unwarp(project, self.room, surface))
+        self.step("others", len(self.layouts), lambda: self.look_again(project))
+        self.step("emission", patterns, lambda: self.make_textures(project))
+        self.step("texture", surface, lambda: self.send_texture(surface))
         self.step("relight", [], lambda: self.relight(project))
-        self.step("expose", [], lambda: self.choose_exposure(surface))
-        self.step("mix", [project["mix"], project["added"]], lambda: self.mix(project, surface))
+        if "expose" in self.keys:  # light is proportional to the white, so the first picture need not wait
+            self.exposure = self.exposed[0] * self.exposed[1] / project["white"]
+        else:
+            self.step("expose", [], lambda: self.choose_exposure(project))
+        self.step("mix", mixes, self.mix)
+        self.step("lamps", surface, self.send_lamps)
         self.done["mix"] = project
-        self.step("lux", project["lux_plane"], lambda: self.measure(project, surface))
         self.step("first", shot, lambda: self.first_picture(project, size))
+        self.step("expose", [], lambda: self.choose_exposure(project))
+        self.step("lux", project["lux_plane"], lambda: self.measure(project))
         if compare != "off":
             self.step("before", [compare, *shot], lambda: self.first_before(project, size, compare))
         self.step("second", shot, lambda: self.second_picture(project, size))
@@ -115,123 +145,60 @@ class Light:
         self.keys[name] = key
         self.send("step", name=name, seconds=time.perf_counter() - start)
 
-    def stage(self, first: str, last: str, **settings: Any) -> None:
-        """Runs stages of the transfer."""
-        self.send("working", stage=last)
-        self.thread.finish(self.transfer.start(first, last, **settings))
-
-    # -- the photo
-
-    def find_view(self) -> None:
-        self.stage("view", "view")
-
-    def make_masks(self, project: Project) -> None:
-        self.transfer.set_strokes(strokes_of(self.context, project, self.photo.size[:2]))
-        self.lights = None
-        try:
-            self.find_masks()
-        finally:
-            self.send_warnings()
-        self.lights = self.transfer.image("lights-mask")
-
-    def find_masks(self) -> None:
-        """Computes the masks. They always follow the camera that the library has found."""
-        self.stage("view" if self.is_dragged else "features", "lights")
-        self.is_dragged = self.is_replaced = False
-
-    def unwarp(self, project: Project) -> None:
-        assert self.lights is not None
-        if (self.is_replaced and not project["removed"]) or self.is_dragged:
-            self.find_masks()
-        mask = self.lights.numpy()[..., 0]
-        if project["removed"]:
-            mask = pictures.without(mask, project["removed"], MAX_LAMP_DISTANCE * mask.shape[1])
-            if not (mask > 0.5).any():
-                raise ValueError("all lamps have been taken out of the photo: undo one")
-            self.transfer.use_mask("lights", luxfer.Image(self.context, mask))
-            self.is_replaced = True
-        self.send_masks(mask)
-        try:
-            self.stage("unwarp", "unwarp", **self.plane_of(project))
-        finally:
-            self.send_view(project)
-            self.send_warnings()
-
-    def plane_of(self, project: Project) -> dict[str, Any]:
-        """Replaces the camera by the camera of the dragged grid, and returns the settings of the stage "unwarp"."""
-        self.camera_by_grid = None
-        if not project["grid"]:
-            return {}
-        size = self.photo.size[:2]
-        axes, focal = grid.camera_of(project["grid"], size, self.transfer.view.focal)
-        plane_axes = grid.use(self.transfer, axes.tolist(), focal, size)
-        self.is_dragged = True
-        self.camera_by_grid = axes.tolist(), focal
-        return {"rectify": {"plane_axes": plane_axes}}
-
-    def send_masks(self, lights: np.ndarray[Any, Any]) -> None:
-        """Sends the masks at full size, and the lamps of the photo."""
-        plane, lamps = self.transfer.image("plane-mask"), luxfer.Image(self.context, lights)
-        report = self.transfer.report
-        size, plane_bits = pictures.bits(plane)
-        header = {
-            **size,
-            "live": False,
-            "digest": pictures.digest(plane, lamps),
-            "lamps": pictures.boxes(*pictures.regions(lights > 0.5)),
-            "errors": {"plane": report.plane_error, "lights": report.lights_error},
-        }
-        self.send("masks", plane_bits + pictures.bits(lamps)[1], **header)
-
-    def send_view(self, project: Project) -> None:
-        """Sends the vanishing points and, once the plane has been unwarped, its rectangle."""
-        view = self.transfer.view
-        photo_width, photo_height = self.photo.size[:2]
-        width, height, _ = self.transfer.image("unwarped").size if view.is_unwarped else (0, 0, 0)
-        self.send(
-            "view",
-            vanishing=view.vanishing_points,
-            support=view.vanishing_support,
-            errors=view.vanishing_errors,
-            focal=view.focal,
-            dragged=self.is_dragged,
-            unwarped=[width, height] if view.is_unwarped else None,
-            to_photo=view.to_photo if view.is_unwarped else None,
-            pixel_size=view.pixel_size,
-            lens=[*view.principal, 4 * view.undone / (photo_width**2 + photo_height**2)],
-        )
-
-    def send_warnings(self) -> None:
-        try:
-            warnings = self.transfer.warnings
-        except luxfer.errors.NotReady:
-            return
-        self.send(
-            "warnings",
-            list=[
-                {
-                    "code": w.code.name,
-                    "stage": w.stage.name.lower(),
-                    "message": w.message,
-                    "advice": w.advice,
-                    "at": w.place,
-                }
-                for w in warnings
-            ],
-        )
-
     # -- the room
 
-    def make_texture(self, project: Project, surface: str) -> None:
-        self.transfer.set_scene(self.room, surface)
-        self.transfer.set_zones(np.array(project["zones"], np.float64).reshape(-1, 4))
-        self.stage("emission", "emission", **texture_settings(project))
+    def look_again(self, project: Project) -> None:
+        """Makes a shot for each further surface."""
+        del self.shots[len(self.layouts) :]
+        while len(self.shots) < len(self.layouts):
+            self.shots.append(Shot(self.photo, self.thread, lambda *_, **__: None))
+        for other in self.shots[1:]:
+            other.follow(self.shot, project)
+
+    def make_textures(self, project: Project) -> None:
+        """Makes the textures of all surfaces, and places them in one room."""
+        settings: list[Any] = []
+        for shot, one in zip(self.shots, self.layouts):
+            shot.transfer.set_scene(self.room, one.surface)
+            shot.transfer.set_zones(np.array(one.zones, np.float64).reshape(-1, 4))
+            settings.append(layout.settings_of(project, one, shot.kept_distance))
+        self.stage("emission", settings)
+
+    def stage(self, name: str, settings: Any) -> None:
+        """Runs one stage of the transfers of all surfaces together."""
+        self.send("working", stage=name)
+        transfers = [shot.transfer for shot in self.shots]
+        try:
+            self.thread.finish(luxfer.Transfer.start_all(transfers, name, name, settings))
+        except luxfer.errors.InvalidArgument as error:
+            if "light one surface" not in str(error):
+                raise
+            names = ", ".join(one.surface for one in self.layouts)
+            raise ValueError(f"two of the surfaces {names} are one: choose another one") from None
         self.send_warnings()
-        image = self.transfer.image("emission")
+
+    def send_warnings(self) -> None:
+        """Sends the warnings of the photo, and for each surface those of its texture and its light."""
+        found = self.shot.warnings()
+        for shot, one in zip(self.shots, self.layouts):
+            of_room = [w for w in shot.warnings() if w.stage in OF_ROOM]
+            if len(self.layouts) == 1:
+                continue
+            found = [w for w in found if w not in of_room]
+            found += [replace(w, message=f"{one.surface}: {w.message}") for w in of_room]
+        send_warnings(self.send, found)
+
+    def send_texture(self, surface: str) -> None:
+        """Sends the texture of the surface on which the user works."""
+        image, shot = self.transfer.image("emission"), self.shots[self.active]
         width, height, _ = image.size
         small = pictures.reduced(image, 300_000)
         values = small.numpy()
-        report = self.transfer.report
+        report, known = self.transfer.report, self.photo.metadata
+        proposed = report.proposed_white, report.proposed_white_low, report.proposed_white_high
+        if shot.edited is not None and known.white_luminance > 0:  # a photo with reshaped lamps has no metadata
+            proposed = known.white_luminance, known.white_luminance_low, known.white_luminance_high
+        distance, error = self.distance()
         self.send(
             "texture",
             pictures.rgb(values, 1 / max(1e-9, float(values.max()))),
@@ -240,27 +207,45 @@ class Light:
             texels=[width, height],
             digest=pictures.digest(image),
             surface={"name": surface, **(rectangle(self.room, surface) or {})},
-            distance=report.plane_distance,
-            distance_error=report.plane_distance_error,
-            proposed_white=[report.proposed_white, report.proposed_white_low, report.proposed_white_high],
+            distance=distance,
+            distance_range=intervals.around(distance, error),
+            proposed_white=proposed,
         )
 
-    def relight(self, project: Project) -> None:
-        self.stage("relight", "relight", white_luminance=project["white"], relight=RELIGHT)
-        self.send_warnings()
+    def distance(self) -> tuple[float, float]:
+        """Returns the distance of the photo's camera from the plane, and its relative standard deviation."""
+        report = self.transfer.report
+        return self.shots[self.active].kept_distance or (report.plane_distance, report.plane_distance_error)
 
-    def mix(self, project: Project, surface: str) -> None:
-        """Gives each kind of lamp its share of the light, and sends the lamps and how their texture lies."""
-        placed = self.room.find_surface(surface)
-        self.lit = mix.apply(self.transfer, placed, project["mix"], project["added"])
+    def relight(self, project: Project) -> None:
+        self.stage("relight", {"white_luminance": project["white"], "relight": RELIGHT})
+
+    def mix(self) -> None:
+        """Gives each kind of lamp its share of the light."""
+        self.lit = mix.apply(self.placed())
+
+    def send_lamps(self) -> None:
+        """Sends the lamps of the surface on which the user works, how their texture lies, and the light of others."""
+        placed = self.placed()
         names = ("kind", "position", "axis", "normal", "size", "flux", "radiance", "cct", "duv")
-        shown = mix.lamps(self.transfer.fixtures, placed, project["mix"], project["added"])
-        lamps = [{k: getattr(lamp, k) for k in names} | {"added": number} for lamp, number in shown]
+        found = mix.lamps(placed[self.active])
+        lamps = [{k: getattr(lamp, k) for k in names} | {"added": number} for lamp, number in found]
+        report, solution = self.transfer.report, self.transfer.solution
+        is_estimated = self.layouts[self.active].pattern["scale"] == "distance"
+        scale_error = self.distance()[1] if is_estimated else 0.0
+        others = [one for i, one in enumerate(placed) if i != self.active]
         self.send(
             "lamps",
-            error=self.transfer.solution.error,
+            error=solution.error,
             list=lamps,
-            to_texture=mix.texture_map(self.lit, placed).tolist(),
+            kinds=intervals.of_kinds(
+                self.context, [lamp for lamp, _ in found], solution, scale_error, report.texel_size
+            ),
+            to_texture=mix.texture_map(self.lit, placed[self.active].surface, len(placed)).tolist(),
+            others=[
+                {"surface": one.layout.surface, "lamps": len(found), "flux": math.fsum(lamp.flux for lamp, _ in found)}
+                for one, found in ((one, mix.lamps(one)) for one in others)
+            ],
         )
 
     def camera(self, project: Project) -> dict[str, Any]:
@@ -291,8 +276,7 @@ class Light:
         """Returns the room with the light that the page compares with."""
         if compare != "white":
             return self.room
-        placed = self.room.find_surface(project["surface"] or self.surface)
-        return mix.apply(self.transfer, placed, project["mix"], project["added"], "white")
+        return mix.apply(self.placed(), "white")
 
     def first_before(self, project: Project, size: tuple[int, int], compare: str) -> None:
         self.quick(self.room_before(project, compare), project, size, "before")
@@ -330,20 +314,22 @@ class Light:
         )
         return measure.numbers(self.thread.finish(job))
 
-    def choose_exposure(self, surface: str) -> None:
+    def choose_exposure(self, project: Project) -> None:
         """Chooses the exposure of the pictures by the work plane before lamps are dimmed, so dimmed light is darker."""
-        self.desks = self.lux_on(work_plane(self.room, surface)[0], self.transfer.scene("lit"))
+        self.desks = self.lux_on(work_plane(self.room, self.ceiling)[0], self.transfer.scene("lit"))
         self.exposure = exposure_for(self.desks["mean"])
+        self.exposed = self.exposure, project["white"]
 
-    def measure(self, project: Project, surface: str) -> None:
+    def measure(self, project: Project) -> None:
         """Computes and sends the illuminance of the plane that the project chooses."""
-        plane, problem = measure.chosen_plane(self.room, surface, project)
+        ceiling = self.ceiling
+        plane, problem = measure.chosen_plane(self.room, ceiling, project)
         if plane is None:
             self.send("lux", problem=problem)
             return
-        is_known = measure.is_default(project) and mix.is_plain(project["mix"], project["added"])
+        is_known = measure.is_default(project) and all(one.is_plain for one in self.layouts)
         found = self.desks if is_known else self.lux_on(plane, self.lit)
-        self.send("lux", **found, **measure.place(self.room, surface, plane, project))
+        self.send("lux", **found, **measure.place(self.room, ceiling, plane, project))
 
     def refine(self, project: Project, size: tuple[int, int]) -> None:
         """Renders the picture at full size and sends each intermediate state, until it has the paths of the plan."""
@@ -412,5 +398,11 @@ class Light:
         chosen = {k: v for k, v in plan.render_params.items() if k in ("samples", "target_error", "seed")}
         self.planned = {"render": chosen}
         self.send(
-            "plan", noise=project["noise"], seconds=plan.report.seconds, error=plan.report.error, plan=self.planned
+            "plan",
+            noise=project["noise"],
+            seconds=plan.report.seconds,
+            seconds_range=intervals.of_plan(plan.report.seconds),
+            error=plan.report.error,
+            error_range=intervals.of_plan(plan.report.error),
+            plan=self.planned,
         )

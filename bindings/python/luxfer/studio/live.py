@@ -1,12 +1,13 @@
 """Masks while strokes are painted, at a small size, and the pixel where one more stroke would help most.
 
-The features of the small photo are computed again after each stroke, because strokes change the layout of the room.
-This and the masks take less than 50 ms on two idle cores. When the user pauses, light.py computes the masks at full
-size.
+Strokes may change the layout of the room, and with it the features of the small photo. They rarely do, so the masks by
+the former features come first; then the features are computed again, and the masks only if the features have changed.
+When the user pauses, light.py computes the masks at full size.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import luxfer
@@ -16,7 +17,7 @@ from . import pictures
 from .jobs import Latest
 from .project import Project
 
-#: Number of pixels of the small photo, chosen so that masks appear within 50 ms on two cores.
+#: Number of pixels of the small photo, chosen so that masks need less than 50 ms of processor time.
 PIXELS = 150_000
 #: Side of the window over which doubt is averaged, as a share of the photo's width.
 WINDOW = 0.06
@@ -56,17 +57,33 @@ class LiveMasks:
         self.share = self.size[0] / photo.size[0]
         self.transfer = luxfer.Transfer(self.context, self.photo)
         self.is_viewed = False
+        #: The features by the latest strokes that were looked at, and their values.
+        self.features: tuple[luxfer.Image, np.ndarray[Any, Any]] | None = None
         self.segments: dict[str, luxfer.Segment] = {}
 
-    def follow(self, project: Project, thread: Latest[Any]) -> dict[str, luxfer.Image]:
-        """Computes the masks from the strokes of a project; masks that cannot be computed are missing in the result."""
+    def follow(self, project: Project, thread: Latest[Any], show: Callable[[dict[str, luxfer.Image]], None]) -> None:
+        """Computes the masks from the strokes of a project, and passes them to `show`; masks that cannot be computed
+        are missing. First come the masks by the features of the strokes before, then, if the new strokes have changed
+        the features, the masks by these."""
+        strokes = strokes_of(self.context, project, self.size, self.share)
+        if self.features is not None:
+            show(self.segment(self.features[0], strokes, thread))
+        features = self.features_of(strokes, thread)
+        values = features.numpy()
+        if self.features is None or not np.array_equal(values, self.features[1]):
+            self.features = features, values
+            show(self.segment(features, strokes, thread))
+
+    def features_of(self, strokes: luxfer.Strokes, thread: Latest[Any]) -> luxfer.Image:
         if not self.is_viewed:
             thread.finish(self.transfer.start("view", "view"))
             self.is_viewed = True
-        strokes = strokes_of(self.context, project, self.size, self.share)
         self.transfer.set_strokes(strokes)
         thread.finish(self.transfer.start("features", "features"))
-        features = self.transfer.image("features")
+        return self.transfer.image("features")
+
+    def segment(self, features: luxfer.Image, strokes: luxfer.Strokes, thread: Latest[Any]) -> dict[str, luxfer.Image]:
+        """Returns the masks by given features."""
         self.segments = {}
         masks: dict[str, luxfer.Image] = {}
         for phase in ("plane", "lights"):

@@ -16,22 +16,13 @@ from typing import Any
 import luxfer
 import numpy as np
 
+from .layout import Placed
 from .pictures import regions
 
 #: Columns of the schedule that are proportional to the light of a lamp.
 LIGHT = ("red_cd_m2", "green_cd_m2", "blue_cd_m2", "flux_lm")
 #: Number of points along each side of a lamp that find its texels.
 POINTS = 5
-
-
-def factor(mix: dict[str, float], kind: int) -> float:
-    """Returns the factor of a kind of lamp; 1 if the mix does not name it."""
-    return mix.get(str(kind), 1.0)
-
-
-def is_plain(mix: dict[str, float], added: list[list[float]]) -> bool:
-    """Whether the mix changes nothing."""
-    return not added and all(value == 1 for value in mix.values())
 
 
 def models(fixtures: list[luxfer.types.Fixture]) -> dict[int, int]:
@@ -43,23 +34,19 @@ def models(fixtures: list[luxfer.types.Fixture]) -> dict[int, int]:
     return out
 
 
-def lamps(
-    fixtures: list[luxfer.types.Fixture],
-    surface: luxfer.types.Surface,
-    mix: dict[str, float],
-    added: list[list[float]],
-) -> list[tuple[luxfer.types.Fixture, int | None]]:
-    """Returns the lamps of the room, each with the number of its addition or None. Additions of a kind that the room no
-    longer has are left out."""
+def lamps(placed: Placed) -> list[tuple[luxfer.types.Fixture, int | None]]:
+    """Returns the lamps of a surface, each with the number of its addition or None. Additions of a kind that the room
+    no longer has are left out."""
+    fixtures = placed.transfer.fixtures
     known = models(fixtures)
     out: list[tuple[luxfer.types.Fixture, int | None]] = [(lamp, None) for lamp in fixtures]
-    for i, (kind, u, v) in enumerate(added):
+    for i, (kind, u, v) in enumerate(placed.layout.added):
         if int(kind) in known:
             model = fixtures[known[int(kind)]]
-            position = np.array(model.position) + step_to(model, surface, u, v)
+            position = np.array(model.position) + step_to(model, placed.surface, u, v)
             out.append((replace(model, position=tuple(float(x) for x in position)), i))
     for at, (lamp, number) in enumerate(out):
-        by = factor(mix, lamp.kind)
+        by = placed.layout.factor(lamp.kind)
         radiance = tuple(by * x for x in lamp.radiance)
         out[at] = replace(lamp, flux=by * lamp.flux, radiance=radiance), number
     return out
@@ -73,34 +60,34 @@ def step_to(
     return np.asarray(du * np.array(surface.u_axis) + dv * np.array(surface.v_axis))
 
 
-def apply(
-    transfer: luxfer.Transfer,
-    surface: luxfer.types.Surface,
-    mix: dict[str, float],
-    added: list[list[float]],
-    which: str = "lit",
-) -> luxfer.Scene:
-    """Returns the lit room of a transfer with its lamps as the user wants them; "white" is the room in white light."""
-    lit = transfer.scene(which)
-    if is_plain(mix, added):
-        return lit
-    mesh = newest(lit)
+def apply(all_placed: list[Placed], which: str = "lit") -> luxfer.Scene:
+    """Returns the lit room with its lamps as the user wants them; "white" is the room in white light."""
+    lit = all_placed[0].transfer.scene(which)
+    for placed in all_placed:
+        if not placed.layout.is_plain:
+            change_texture(lit, placed, len(all_placed))
+    return lit
+
+
+def change_texture(lit: luxfer.Scene, placed: Placed, count: int) -> None:
+    """Changes the lamps of one of `count` surfaces in the lit room."""
+    surface, fixtures, layout = placed.surface, placed.transfer.fixtures, placed.layout
+    mesh = mesh_of(lit, surface, count)
     used = lit.material_texture(lit.mesh(mesh).material, "emission")
     values = lit.texture(used.texture).numpy().copy()
-    labels, count = regions(values.max(axis=2) > 0)
-    to_texture = texture_map(lit, surface)
-    factors = np.ones(count + 1, np.float32)
-    for lamp in transfer.fixtures:
+    labels, found = regions(values.max(axis=2) > 0)
+    to_texture = texture_map(lit, surface, count)
+    factors = np.ones(found + 1, np.float32)
+    for lamp in fixtures:
         for label in labels_of(lamp, surface, to_texture, labels):
-            factors[label] = factor(mix, lamp.kind)
+            factors[label] = layout.factor(lamp.kind)
     values *= factors[labels][..., None]
-    known = models(transfer.fixtures)
-    for kind, u, v in added:
+    known = models(fixtures)
+    for kind, u, v in layout.added:
         if int(kind) in known:
-            copy_lamp(values, labels, transfer.fixtures[known[int(kind)]], surface, to_texture, (u, v))
+            copy_lamp(values, labels, fixtures[known[int(kind)]], surface, to_texture, (u, v))
     index = lit.add_texture(luxfer.Image(lit.context, values), used.wrap_u, used.wrap_v)
     lit.set_material_texture(lit.mesh(mesh).material, "emission", index, used.uv_set, used.transform)
-    return lit
 
 
 def copy_lamp(
@@ -121,15 +108,24 @@ def copy_lamp(
     values[ys + dy, xs + dx] = values[ys, xs]
 
 
-def newest(lit: luxfer.Scene) -> int:
-    """Returns the mesh with the lamps, which a transfer adds last."""
-    return lit.counts.meshes - 1
+def mesh_of(lit: luxfer.Scene, surface: luxfer.types.Surface, count: int) -> int:
+    """Returns the mesh with the lamps of a surface. A transfer adds the meshes of its `count` surfaces last; that of a
+    surface fills its rectangle best."""
+    meshes = range(lit.counts.meshes - count, lit.counts.meshes)
+    return min(meshes, key=lambda mesh: misfit(lit.mesh_arrays(mesh)["positions"].astype(float), surface))
 
 
-def texture_map(lit: luxfer.Scene, surface: luxfer.types.Surface) -> np.ndarray[Any, Any]:
+def misfit(positions: np.ndarray[Any, Any], surface: luxfer.types.Surface) -> float:
+    """Returns the largest distance in metres of the bounds of positions from those of a surface."""
+    low, high = (f(on_surface(positions, surface), axis=0) for f in (np.min, np.max))
+    away = np.abs((positions - surface.origin) @ surface.normal).max()
+    return float(max(away, *np.abs(low), *np.abs(high - surface.size)))
+
+
+def texture_map(lit: luxfer.Scene, surface: luxfer.types.Surface, count: int) -> np.ndarray[Any, Any]:
     """Returns the 2 x 3 matrix that maps u and v in metres on the surface to shares of the width and the height of the
     texture. If the pattern is turned, the texture covers a turned rectangle."""
-    mesh = newest(lit)
+    mesh = mesh_of(lit, surface, count)
     used = lit.material_texture(lit.mesh(mesh).material, "emission")
     arrays = lit.mesh_arrays(mesh)
     places = on_surface(arrays["positions"].astype(float), surface)
@@ -161,29 +157,33 @@ def labels_of(
     return [int(label) for label in np.unique(found) if label]
 
 
-def write_schedule(
-    path: Path,
-    transfer: luxfer.Transfer,
-    surface: luxfer.types.Surface,
-    mix: dict[str, float],
-    added: list[list[float]],
-) -> None:
-    """Writes the schedule of the lamps, .csv or .json, as the library does, with the lamps as the user wants them."""
-    transfer.save_fixtures(path)
-    if is_plain(mix, added):
-        return
-    fixtures = transfer.fixtures
+def write_schedule(path: Path, all_placed: list[Placed]) -> None:
+    """Writes the schedule of the lamps, .csv or .json, as the library does, with the lamps as the user wants them. If
+    several surfaces have lamps, a column names the surface."""
+    all_rows: list[dict[str, Any]] = []
+    for placed in all_placed:
+        placed.transfer.save_fixtures(path)
+        if len(all_placed) == 1 and placed.layout.is_plain:
+            return
+        rows, save = read_rows(path)
+        change_rows(rows, placed)
+        name = {"surface": placed.layout.surface} if len(all_placed) > 1 else {}
+        all_rows += [{**row, **name} for row in rows]
+    save(all_rows)
+
+
+def change_rows(rows: list[dict[str, Any]], placed: Placed) -> None:
+    """Changes the lamps of a schedule, and appends the added ones."""
+    fixtures = placed.transfer.fixtures
     known = models(fixtures)
-    rows, save = read_rows(path)
-    for kind, u, v in added:
+    for kind, u, v in placed.layout.added:
         if int(kind) in known:
             index = known[int(kind)]
-            rows.append(moved(rows[index], step_to(fixtures[index], surface, u, v)))
-    for row in rows:
-        by = factor(mix, int(row["kind"]))
+            rows.append(moved(rows[index], step_to(fixtures[index], placed.surface, u, v)))
+    for row in rows if not placed.layout.is_plain else ():
+        by = placed.layout.factor(int(row["kind"]))
         for name in LIGHT:
             put(row, name, float(row[name]) * by)
-    save(rows)
 
 
 def read_rows(path: Path) -> tuple[list[dict[str, Any]], Callable[[list[dict[str, Any]]], None]]:
@@ -202,7 +202,8 @@ def read_rows(path: Path) -> tuple[list[dict[str, Any]], Callable[[list[dict[str
 
     def save_csv(rows: list[dict[str, Any]]) -> None:
         with path.open("w", newline="", encoding="utf-8") as out:
-            writer = csv.DictWriter(out, names, lineterminator="\n")
+            surface = ["surface"] if rows and "surface" in rows[0] else []
+            writer = csv.DictWriter(out, [*names, *surface], lineterminator="\n")
             writer.writeheader()
             writer.writerows(rows)
 

@@ -98,13 +98,22 @@ def without(mask: np.ndarray[Any, Any], points: list[list[float]], max_distance:
     if not count or not points:
         return mask
     out = mask.copy()
-    height, width = mask.shape
-    for x, y in points:
-        x0, x1 = int(max(0, x - max_distance)), int(min(width, x + max_distance + 1))
-        y0, y1 = int(max(0, y - max_distance)), int(min(height, y + max_distance + 1))
-        window = labels[y0:y1, x0:x1]
-        ys, xs = np.nonzero(window)
-        if len(xs):
-            nearest = np.argmin((xs + x0 + 0.5 - x) ** 2 + (ys + y0 + 0.5 - y) ** 2)
-            out[labels == window[ys[nearest], xs[nearest]]] = 0
+    for point in points:
+        if label := nearest(labels, point, max_distance):
+            out[labels == label] = 0
     return out
+
+
+def nearest(labels: np.ndarray[Any, Any], point: list[float], max_distance: float) -> int:
+    """Returns the number of the region at a point, or else of the nearest region within `max_distance` pixels of it
+    along each axis; 0 if there is none."""
+    height, width = labels.shape
+    x, y = point
+    x0, x1 = int(max(0, x - max_distance)), int(min(width, x + max_distance + 1))
+    y0, y1 = int(max(0, y - max_distance)), int(min(height, y + max_distance + 1))
+    window = labels[y0:y1, x0:x1]
+    ys, xs = np.nonzero(window)
+    if not len(xs):
+        return 0
+    i = np.argmin((xs + x0 + 0.5 - x) ** 2 + (ys + y0 + 0.5 - y) ** 2)
+    return int(window[ys[i], xs[i]])

@@ -116,7 +116,7 @@ static void fill(const unsigned char *is_lit, int *labels, int width, int height
     free(waiting);
 }
 /* [end regions] */
-/* [start removed] */
+/* [start nearest] */
 
 /* Returns the lit pixel nearest to a point, within `max_distance` pixels along each axis; -1 if no pixel is. */
 static int nearest_lit(const unsigned char *is_lit, int width, int height, double x, double y, double max_distance) {
@@ -133,16 +133,18 @@ static int nearest_lit(const unsigned char *is_lit, int width, int height, doubl
         }
     return found;
 }
+/* [end nearest] */
+/* [start removed] */
 
 /* Takes lamps of the photo out of the mask of the lights. */
-static void take_out(luxfer_transfer *transfer) {
+static void take_out(luxfer_transfer **transfers) {
     luxfer_image *mask = NULL, *changed;
     uint32_t width, height, channels;
     float *values;
     unsigned char *is_lit;
     int *labels, i;
     size_t k;
-    check(luxfer_transfer_get_image(transfer, LUXFER_TRANSFER_LIGHTS_MASK, &mask), "mask");
+    check(luxfer_transfer_get_image(transfers[0], LUXFER_TRANSFER_LIGHTS_MASK, &mask), "mask");
     values = pixels_of(mask, &width, &height, &channels);
     is_lit = (unsigned char *)allocate((size_t)width * height, 1);
     labels = (int *)allocate((size_t)width * height, sizeof(int));
@@ -155,11 +157,13 @@ static void take_out(luxfer_transfer *transfer) {
     for (i = 0; i < (int)(width * height); i++)
         if (labels[i]) values[i] = 0;
     changed = image_of(values, width, height, 1);
-    check(luxfer_transfer_use_mask(transfer, LUXFER_PHASE_LIGHTS, changed), "mask");
+    for (k = 0; k < placement_count; k++)
+        check(luxfer_transfer_use_mask(transfers[k], LUXFER_PHASE_LIGHTS, changed), "mask");
     free(labels), free(is_lit), free(values);
     luxfer_release(changed), luxfer_release(mask);
 }
 /* [end removed] */
+/* [file reshape] */
 /* [start grid] */
 
 /* Draws a line in a cell of a picture, along (dx, dy) through the middle of the cell; `side` is the cell's length. */
@@ -247,231 +251,7 @@ static void use_grid(luxfer_transfer *transfer, luxfer_image *photo, luxfer_rect
     luxfer_release(rectify), luxfer_release(drawing);
 }
 /* [end grid] */
-/* [start mix] */
-
-/* The emissive texture of the lit room, its lit regions, and how the surface maps to it. */
-typedef struct texture {
-    float *values;
-    int *labels, count, width, height;
-    luxfer_surface surface;
-    double map[2][3]; /* u and v in metres, and 1, to shares of width and height */
-} texture;
-
-static double factor_of(uint32_t kind) {
-    size_t i;
-    for (i = 0; i < dimmer_count; i++)
-        if (dimmers[i].kind == kind) return dimmers[i].factor;
-    return 1;
-}
-
-/* Returns u and v in metres of a position on a surface. */
-static void on_surface(const luxfer_surface *surface, const double position[3], double uv[2]) {
-    int k;
-    uv[0] = uv[1] = 0;
-    for (k = 0; k < 3; k++) {
-        uv[0] += (position[k] - surface->origin[k]) * surface->u_axis[k];
-        uv[1] += (position[k] - surface->origin[k]) * surface->v_axis[k];
-    }
-}
-
-/* Fits the map from the surface to the texture to the vertices of the mesh that the transfer has added. */
-static void fit_map(luxfer_scene *lit, uint32_t mesh, uint32_t uv_set, texture *t) {
-    luxfer_mesh_info info;
-    double m[3][5] = {{0}};
-    float *positions, *uvs;
-    size_t i, vertices;
-    int r, c, k;
-    check(luxfer_scene_get_mesh(lit, mesh, &info, sizeof info), "mesh");
-    vertices = (size_t)info.vertex_count;
-    positions = (float *)allocate(3 * vertices, sizeof(float));
-    uvs = (float *)allocate(2 * vertices, sizeof(float));
-    check(luxfer_scene_read_vertices(lit, mesh, LUXFER_VERTEX_POSITION, positions, vertices), "mesh");
-    check(luxfer_scene_read_vertices(lit, mesh, uv_set ? LUXFER_VERTEX_UV_1 : LUXFER_VERTEX_UV_0, uvs,
-                                     vertices), "mesh");
-    for (i = 0; i < vertices; i++) { /* sum up the normal equations */
-        const double position[3] = {positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]};
-        double known[3] = {0, 0, 1};
-        on_surface(&t->surface, position, known);
-        for (r = 0; r < 3; r++) {
-            for (c = 0; c < 3; c++) m[r][c] += known[r] * known[c];
-            for (c = 0; c < 2; c++) m[r][3 + c] += known[r] * uvs[2 * i + (size_t)c];
-        }
-    }
-    for (k = 0; k < 3; k++) /* eliminate; the matrix is symmetric and positive definite */
-        for (r = 0; r < 3; r++) {
-            const double share = m[r][k] / m[k][k];
-            if (r != k)
-                for (c = 0; c < 5; c++) m[r][c] -= share * m[k][c];
-        }
-    for (r = 0; r < 3; r++)
-        for (c = 0; c < 2; c++) t->map[c][r] = m[r][3 + c] / m[r][r];
-    free(uvs), free(positions);
-}
-
-/* Marks with 1 the regions that a lamp covers. */
-static void regions_of(const luxfer_fixture *lamp, const texture *t, unsigned char *is_of_lamp) {
-    double across[3], position[3], uv[2];
-    int i, j, k;
-    memset(is_of_lamp, 0, (size_t)t->count + 1);
-    for (k = 0; k < 3; k++) {
-        const int a = (k + 1) % 3, b = (k + 2) % 3;
-        across[k] = (double)lamp->normal[a] * lamp->axis[b] - (double)lamp->normal[b] * lamp->axis[a];
-    }
-    for (i = 0; i < 5; i++)
-        for (j = 0; j < 5; j++) {
-            int x, y;
-            for (k = 0; k < 3; k++)
-                position[k] = lamp->position[k] + ((i + 0.5) / 5 - 0.5) * lamp->size[0] * lamp->axis[k] +
-                              ((j + 0.5) / 5 - 0.5) * lamp->size[1] * across[k];
-            on_surface(&t->surface, position, uv);
-            x = (int)((t->map[0][0] * uv[0] + t->map[0][1] * uv[1] + t->map[0][2]) * t->width);
-            y = (int)((t->map[1][0] * uv[0] + t->map[1][1] * uv[1] + t->map[1][2]) * t->height);
-            x = x < 0 ? 0 : x >= t->width ? t->width - 1 : x;
-            y = y < 0 ? 0 : y >= t->height ? t->height - 1 : y;
-            is_of_lamp[t->labels[y * t->width + x]] = 1;
-        }
-    is_of_lamp[0] = 0;
-}
-
-/* Returns the largest lamp of a kind; NULL if the room has none. */
-static const luxfer_fixture *model_of(const luxfer_fixture *lamps, size_t count, uint32_t kind) {
-    const luxfer_fixture *out = NULL;
-    size_t i;
-    for (i = 0; i < count; i++)
-        if (lamps[i].kind == kind && (!out || lamps[i].area > out->area)) out = &lamps[i];
-    return out;
-}
-
-/* Returns the step in metres along u and v from a lamp to the place of an added lamp. */
-static void step_to(const luxfer_fixture *lamp, const luxfer_surface *surface, const double place[3], double step[2]) {
-    const double position[3] = {lamp->position[0], lamp->position[1], lamp->position[2]};
-    double uv[2];
-    on_surface(surface, position, uv);
-    step[0] = place[1] - uv[0];
-    step[1] = place[2] - uv[1];
-}
-
-/* Copies the texels of a lamp to another place; what lies beyond the texture is cut. */
-static void copy_lamp(const luxfer_fixture *lamp, texture *t, const double place[3], unsigned char *is_of_lamp) {
-    const size_t size = 3 * sizeof(float) * (size_t)t->width * (size_t)t->height;
-    float *before = (float *)allocate(size, 1);
-    double step[2];
-    int x, y, dx, dy;
-    step_to(lamp, &t->surface, place, step);
-    dx = (int)rint((t->map[0][0] * step[0] + t->map[0][1] * step[1]) * t->width);
-    dy = (int)rint((t->map[1][0] * step[0] + t->map[1][1] * step[1]) * t->height);
-    regions_of(lamp, t, is_of_lamp);
-    memcpy(before, t->values, size);
-    for (y = 0; y < t->height; y++)
-        for (x = 0; x < t->width; x++) {
-            const int from = y * t->width + x, to = (y + dy) * t->width + x + dx;
-            if (!is_of_lamp[t->labels[from]] || x + dx < 0 || x + dx >= t->width || y + dy < 0 || y + dy >= t->height)
-                continue;
-            memcpy(t->values + 3 * to, before + 3 * from, 3 * sizeof(float));
-        }
-    free(before);
-}
-
-/* Gives each kind of lamp its share of the light in the texture, and adds lamps to it. */
-static void mix_texture(texture *t, const luxfer_fixture *lamps, size_t lamp_count) {
-    const int pixels = t->width * t->height;
-    unsigned char *is_lit = (unsigned char *)allocate((size_t)pixels, 1), *is_of_lamp;
-    float *factors;
-    size_t k;
-    int i, c;
-    for (i = 0; i < pixels; i++)
-        is_lit[i] = t->values[3 * i] > 0 || t->values[3 * i + 1] > 0 || t->values[3 * i + 2] > 0;
-    for (i = 0; i < pixels; i++)
-        if (is_lit[i] && !t->labels[i]) fill(is_lit, t->labels, t->width, t->height, i, ++t->count);
-    factors = (float *)allocate((size_t)t->count + 1, sizeof(float));
-    is_of_lamp = (unsigned char *)allocate((size_t)t->count + 1, 1);
-    for (i = 0; i <= t->count; i++) factors[i] = 1;
-    for (k = 0; k < lamp_count; k++) {
-        regions_of(&lamps[k], t, is_of_lamp);
-        for (i = 1; i <= t->count; i++)
-            if (is_of_lamp[i]) factors[i] = (float)factor_of(lamps[k].kind);
-    }
-    for (i = 0; i < pixels; i++)
-        for (c = 0; c < 3; c++) t->values[3 * i + c] *= factors[t->labels[i]];
-    for (k = 0; k < added_lamp_count; k++) {
-        const luxfer_fixture *model = model_of(lamps, lamp_count, (uint32_t)added_lamps[k][0]);
-        if (model) copy_lamp(model, t, added_lamps[k], is_of_lamp);
-    }
-    free(factors), free(is_of_lamp), free(is_lit);
-}
-
-/* Changes the lamps of the lit room. */
-static void mix_lamps(luxfer_scene *room, luxfer_scene *lit, const luxfer_fixture *lamps, size_t lamp_count) {
-    luxfer_scene_counts counts;
-    luxfer_mesh_info info;
-    luxfer_texture_use use;
-    luxfer_image *image = NULL, *changed;
-    uint32_t width, height, channels, index;
-    texture t;
-    memset(&t, 0, sizeof t);
-    check(luxfer_scene_get_counts(lit, &counts, sizeof counts), "room");
-    check(luxfer_scene_get_mesh(lit, counts.meshes - 1, &info, sizeof info), "lamps");
-    check(luxfer_scene_get_material_texture(lit, info.material, LUXFER_TEXTURE_EMISSION, &use, sizeof use), "lamps");
-    check(luxfer_scene_get_texture(lit, use.texture, &image), "lamps");
-    check(luxfer_scene_find_surface(room, surface_name, &t.surface, sizeof t.surface), "surface");
-    t.values = pixels_of(image, &width, &height, &channels);
-    t.width = (int)width;
-    t.height = (int)height;
-    t.labels = (int *)allocate((size_t)width * height, sizeof(int));
-    fit_map(lit, counts.meshes - 1, use.uv_set, &t);
-    mix_texture(&t, lamps, lamp_count);
-    changed = image_of(t.values, width, height, channels);
-    check(luxfer_scene_add_texture(lit, changed, use.wrap_u, use.wrap_v, &index), "lamps");
-    check(luxfer_scene_set_material_texture(lit, info.material, LUXFER_TEXTURE_EMISSION, index, use.uv_set,
-                                            use.transform), "lamps");
-    free(t.labels), free(t.values);
-    luxfer_release(changed), luxfer_release(image);
-}
-
-/* Appends the added lamps to the list of lamps, and gives each lamp its share of the light. */
-static size_t mix_list(luxfer_scene *room, luxfer_fixture *lamps, size_t count) {
-    luxfer_surface surface;
-    size_t all = count, i;
-    int k;
-    check(luxfer_scene_find_surface(room, surface_name, &surface, sizeof surface), "surface");
-    for (i = 0; i < added_lamp_count; i++) {
-        const luxfer_fixture *model = model_of(lamps, count, (uint32_t)added_lamps[i][0]);
-        double step[2];
-        if (!model) continue;
-        step_to(model, &surface, added_lamps[i], step);
-        lamps[all] = *model;
-        for (k = 0; k < 3; k++)
-            lamps[all].position[k] += (float)(step[0] * surface.u_axis[k] + step[1] * surface.v_axis[k]);
-        all++;
-    }
-    for (i = 0; i < all; i++) {
-        const double factor = factor_of(lamps[i].kind);
-        lamps[i].flux *= factor;
-        for (k = 0; k < 3; k++) lamps[i].radiance[k] = (float)(factor * lamps[i].radiance[k]);
-    }
-    return all;
-}
-
-/* Writes the schedule with the columns of luxfer_transfer_save_fixtures. */
-static void write_schedule(const char *path, const luxfer_fixture *lamps, size_t count) {
-    FILE *file = fopen(path, "w");
-    size_t i;
-    if (!file) {
-        perror(path);
-        exit(1);
-    }
-    fprintf(file, "x_m,y_m,z_m,normal_x,normal_y,normal_z,axis_x,axis_y,axis_z,length_m,width_m,area_m2,"
-                  "red_cd_m2,green_cd_m2,blue_cd_m2,flux_lm,cct_k,duv,kind\n");
-    for (i = 0; i < count; i++) {
-        const luxfer_fixture *l = &lamps[i];
-        fprintf(file, "%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,", l->position[0], l->position[1], l->position[2],
-                l->normal[0], l->normal[1], l->normal[2], l->axis[0], l->axis[1], l->axis[2]);
-        fprintf(file, "%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%.7g,%u\n", l->size[0], l->size[1], l->area,
-                l->radiance[0], l->radiance[1], l->radiance[2], l->flux, l->cct, l->duv, (unsigned)l->kind);
-    }
-    fclose(file);
-}
-/* [end mix] */
+/* [file mix] */
 
 /* Renders the lit room as the studio shows it. */
 static void render_room(luxfer_scene *lit) {
@@ -500,79 +280,127 @@ static void render_room(luxfer_scene *lit) {
     luxfer_release(picture), luxfer_release(render);
 }
 
-/* Writes the lit room, the schedule of its lamps, and the picture. */
-static void write_results(luxfer_transfer *transfer, luxfer_scene *room) {
+/* Returns the lamps of a surface, with room for the added ones; the caller frees them. */
+static luxfer_fixture *lamps_of(luxfer_transfer *transfer, const placement *on, size_t *count) {
     luxfer_transfer_report report;
-    luxfer_scene *lit = NULL;
     luxfer_fixture *lamps;
-    size_t count, i;
-    check(luxfer_transfer_get_scene(transfer, LUXFER_SCENE_LIT, &lit), "lit room");
+    size_t i;
     check(luxfer_transfer_get_report(transfer, &report, sizeof report), "report");
-    count = report.fixtures;
-    lamps = (luxfer_fixture *)calloc(count + added_lamp_count + 1, sizeof(luxfer_fixture));
+    *count = report.fixtures;
+    lamps = (luxfer_fixture *)calloc(*count + on->added_count + 1, sizeof(luxfer_fixture));
     if (!lamps) exit(1);
-    for (i = 0; i < count; i++)
+    for (i = 0; i < *count; i++)
         check(luxfer_transfer_get_fixture(transfer, (uint32_t)i, &lamps[i], sizeof lamps[i]), "lamps");
-    /* [start plain] */
-    (void)room;
-    check(luxfer_transfer_save_fixtures(transfer, "luminaires.csv"), "luminaires.csv");
-    /* [end plain] */
+    return lamps;
+}
+
+/* Writes the lit room, the schedule of its lamps, and the picture. */
+static void write_results(luxfer_transfer **transfers, luxfer_scene *room) {
+    luxfer_scene *lit = NULL;
+    size_t count, i, k;
     /* [start mix] */
-    mix_lamps(room, lit, lamps, count);
-    count = mix_list(room, lamps, count);
-    write_schedule("luminaires.csv", lamps, count);
+    FILE *file = begin_schedule("luminaires.csv");
     /* [end mix] */
-    for (i = 0; i < count; i++)
-        printf("kind %u: %.0f lm, %.0f K at [%.2f, %.2f, %.2f]\n", (unsigned)lamps[i].kind, lamps[i].flux, lamps[i].cct,
-               lamps[i].position[0], lamps[i].position[1], lamps[i].position[2]);
+    check(luxfer_transfer_get_scene(transfers[0], LUXFER_SCENE_LIT, &lit), "lit room");
+    for (k = 0; k < placement_count; k++) {
+        const placement *on = &placements[k];
+        luxfer_fixture *lamps = lamps_of(transfers[k], on, &count);
+        /* [start plain] */
+        (void)room;
+        check(luxfer_transfer_save_fixtures(transfers[k], "luminaires.csv"), "luminaires.csv");
+        /* [end plain] */
+        /* [start mix] */
+        mix_lamps(room, lit, on, lamps, count);
+        count = mix_list(room, on, lamps, count);
+        write_lamps(file, on, lamps, count);
+        /* [end mix] */
+        for (i = 0; i < count; i++)
+            printf("kind %u: %.0f lm, %.0f K at [%.2f, %.2f, %.2f]\n", (unsigned)lamps[i].kind, lamps[i].flux,
+                   lamps[i].cct, lamps[i].position[0], lamps[i].position[1], lamps[i].position[2]);
+        free(lamps);
+    }
+    /* [start mix] */
+    fclose(file);
+    /* [end mix] */
     check(luxfer_scene_export(lit, "lit.glb"), "lit.glb");
     render_room(lit);
-    free(lamps);
     luxfer_release(lit);
 }
 
-/* Makes the texture of the surface from the photo, and solves for its strength. */
-static void transfer_light(luxfer_transfer *transfer, luxfer_image *photo) {
+/* Settings of a transfer. */
+typedef struct settings {
     luxfer_transfer_params params;
     luxfer_pattern_params pattern;
     luxfer_relight_params relight;
-    /* [start grid] */
     luxfer_rectify_params plane;
-    /* [end grid] */
-    check(luxfer_transfer_params_init(&params, sizeof params), "settings");
-    check(luxfer_pattern_params_init(&pattern, sizeof pattern), "settings");
-    check(luxfer_relight_params_init(&relight, sizeof relight), "settings");
+} settings;
+
+static void fill_settings(settings *of, const placement *on) {
+    check(luxfer_transfer_params_init(&of->params, sizeof of->params), "settings");
+    check(luxfer_pattern_params_init(&of->pattern, sizeof of->pattern), "settings");
+    check(luxfer_relight_params_init(&of->relight, sizeof of->relight), "settings");
+    of->pattern.scale = on->scale;
+    of->pattern.length = on->length;
+    of->pattern.rotation = on->rotation;
+    memcpy(of->pattern.offset, on->offset, sizeof on->offset);
+    of->pattern.margin = on->margin;
     /* [settings] */
-    params.pattern = &pattern;
-    params.relight = &relight;
+    of->params.pattern = &of->pattern;
+    of->params.relight = &of->relight;
+}
+
+/* Makes the texture of each surface from the photo, and solves for the strength of all. */
+static void transfer_light(luxfer_transfer **transfers, luxfer_image *photo) {
+    settings all[placement_count];
+    const luxfer_transfer_params *params[placement_count];
+    luxfer_job *job = NULL;
+    size_t k;
     (void)photo;
-    run(transfer, LUXFER_STAGE_VIEW, LUXFER_STAGE_LIGHTS, NULL, "masks");
+    for (k = 0; k < placement_count; k++) {
+        fill_settings(&all[k], &placements[k]);
+        params[k] = &all[k].params;
+        run(transfers[k], LUXFER_STAGE_VIEW, LUXFER_STAGE_LIGHTS, NULL, "masks");
+        check(luxfer_transfer_set_zones(transfers[k], zones[placements[k].first_zone], placements[k].zone_count),
+              "zones");
+    }
     /* [start removed] */
-    take_out(transfer);
+    take_out(transfers);
     /* [end removed] */
     /* [start grid] */
-    use_grid(transfer, photo, &plane);
-    params.rectify = &plane;
+    for (k = 0; k < placement_count; k++) {
+        use_grid(transfers[k], photo, &all[k].plane);
+        all[k].params.rectify = &all[k].plane;
+    }
     /* [end grid] */
-    check(luxfer_transfer_set_zones(transfer, zones[0], zone_count), "zones");
-    run(transfer, LUXFER_STAGE_UNWARP, LUXFER_STAGE_RELIGHT, &params, "light");
+    /* [start reshaped] */
+    reshape_lamps(transfers, photo);
+    /* [end reshaped] */
+    for (k = 0; k < placement_count; k++)
+        run(transfers[k], LUXFER_STAGE_UNWARP, LUXFER_STAGE_UNWARP, params[k], "plane");
+    check(luxfer_transfer_start_all(context, transfers, placement_count, LUXFER_STAGE_EMISSION, LUXFER_STAGE_RELIGHT,
+                                    params, &job), "light");
+    finish(job, "light");
 }
 
 int main(int argc, char **argv) {
     const char *photo_path = argc > 1 ? argv[1] : photo_file, *room_path = argc > 2 ? argv[2] : room_file;
-    luxfer_transfer *transfer = NULL;
+    luxfer_transfer *transfers[placement_count];
     luxfer_image *photo = NULL;
     luxfer_scene *room = NULL;
+    size_t k;
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_image_load(context, photo_path, LUXFER_COLOUR_SRGB, &photo), photo_path);
     if (*room_path) check(luxfer_scene_load(context, room_path, NULL, &room), room_path);
     else check(luxfer_demo_create_scene(context, LUXFER_DEMO_TARGET_ROOM, &room), "room"); /* the generated room */
-    check(luxfer_transfer_create(context, &transfer), "transfer");
-    check(luxfer_transfer_set_photo(transfer, photo), "photo");
-    check(luxfer_transfer_set_scene(transfer, room, surface_name), "surface");
-    set_strokes(transfer, photo);
-    transfer_light(transfer, photo);
-    write_results(transfer, room);
-    luxfer_release(transfer), luxfer_release(room), luxfer_release(photo), luxfer_release(context);
+    for (k = 0; k < placement_count; k++) {
+        check(luxfer_transfer_create(context, &transfers[k]), "transfer");
+        check(luxfer_transfer_set_photo(transfers[k], photo), "photo");
+        check(luxfer_transfer_set_scene(transfers[k], room, placements[k].surface), "surface");
+        set_strokes(transfers[k], photo);
+    }
+    transfer_light(transfers, photo);
+    write_results(transfers, room);
+    for (k = 0; k < placement_count; k++) luxfer_release(transfers[k]);
+    luxfer_release(room), luxfer_release(photo), luxfer_release(context);
     return 0;
 }

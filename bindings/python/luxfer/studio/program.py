@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
-from . import mix
-from .light import MAX_LAMP_DISTANCE, RELIGHT
+from .layout import Layout, settings_of
+from .light import RELIGHT
 from .live import PHASES
 from .project import Project
-from .room import texture_settings
+from .shot import MAX_LAMP_DISTANCE
 
 HEAD = '''"""Lights a room as in a photo: written by luxfer studio. It needs the package luxfer."""
 
@@ -22,16 +23,21 @@ room_file = sys.argv[2] if len(sys.argv) > 2 else {room}
 context = luxfer.Context()
 photo = luxfer.Image.load(context, photo_file)
 room = luxfer.Scene.load(context, room_file) if room_file else luxfer.Scene.demo(context, "target-room")
-surface = {surface}
+
+# Each surface that receives lamps, its texture with its pattern, and places without lamps: u0, v0, u1, v1 in metres.
+surfaces = {surfaces}
 
 # Strokes on the photo: mask, points in pixels, radius, and whether they are on it or off it.
 strokes = luxfer.Strokes(context, *photo.size[:2])
 for phase, points, radius, positive in {strokes}:
     strokes.add(phase, points, radius, positive)
 
-transfer = luxfer.Transfer(context, photo, room, surface)
-transfer.set_strokes(strokes)
-transfer.run("view", "lights")
+transfers = []
+for surface, _, zones in surfaces:
+    transfer = luxfer.Transfer(context, photo, room, surface)
+    transfer.set_strokes(strokes)
+    transfer.set_zones(zones)
+    transfers.append(transfer.run("view", "lights"))
 '''
 
 REMOVED = """
@@ -39,7 +45,9 @@ REMOVED = """
 from luxfer.studio.pictures import without
 
 mask = transfer.image("lights-mask").numpy()[..., 0]
-transfer.use_mask("lights", without(mask, {removed}, {max_distance} * mask.shape[1]))
+mask = without(mask, {removed}, {max_distance} * mask.shape[1])
+for transfer in transfers:
+    transfer.use_mask("lights", mask)
 """
 
 GRID = """
@@ -47,28 +55,46 @@ GRID = """
 # length in pixels.
 from luxfer.studio import grid
 
-plane = {{"plane_axes": grid.use(transfer, {axes}, {focal!r}, photo.size[:2])}}
+for transfer in transfers:
+    plane = {{"plane_axes": grid.use(transfer, {axes}, {focal!r}, photo.size[:2])}}
+"""
+
+RESHAPED = """
+# Lamps of the photo that were moved, resized or turned: a pixel on each, and its corners before and after.
+from luxfer.studio import reshape
+
+lights, mask_of_plane = (transfer.image(name).numpy()[..., 0] for name in ("lights-mask", "plane-mask"))
+pixels, lights = reshape.apply(
+    photo.numpy(), lights, mask_of_plane, {reshaped}, {max_distance} * lights.shape[1]
+)
+changed = luxfer.Image(context, pixels)
+for transfer in transfers:
+    transfer.set_photo(changed)
+    transfer.use_mask("lights", lights)
 """
 
 #: The lit room and its schedule, as they are and with lamps that are dimmed or added.
 PLAIN = 'transfer.scene("lit")', 'transfer.save_fixtures("luminaires.csv")'
-MIXED = "mix.apply(transfer, *lamps)", 'mix.write_schedule(Path("luminaires.csv"), transfer, *lamps)'
+MIXED = "mix.apply(placed)", 'mix.write_schedule(Path("luminaires.csv"), placed)'
 MIX_HEAD = """
-# The factor of each kind of lamp, and added lamps: kind, u and v in metres.
+# For each surface, the factor of each kind of lamp, and added lamps: kind, u and v in metres.
 from pathlib import Path
 
-from luxfer.studio import mix
+from luxfer.studio import layout, mix
 
-lamps = (room.find_surface(surface), {mix}, {added})
+changes = {changes}
+layouts = [layout.Layout(name, {{}}, zones, *change) for (name, _, zones), change in zip(surfaces, changes)]
+placed = layout.place_all(room, transfers, layouts)
 """
 
 TAIL = """
-# The pattern on the surface, and places without lamps: u0, v0, u1, v1 in metres.
-transfer.set_zones({zones})
-transfer.run("unwarp", "emission", {plane}**{texture})
-transfer.run("relight", "relight", white_luminance={white}, relight={relight})
+for transfer in transfers:
+    transfer.run("unwarp", "unwarp"{plane})
+luxfer.Transfer.run_all(transfers, "emission", "emission", [texture for _, texture, _ in surfaces])
+light = {{"white_luminance": {white}, "relight": {relight}}}
+luxfer.Transfer.run_all(transfers, "relight", "relight", light)
+{mix}
 lit = {lit}
-
 render = luxfer.Render(context, lit)
 render.set_camera(**{camera})
 render.run(width={width}, height={height}, preview=1.0, **{render})
@@ -91,41 +117,53 @@ class Chosen(NamedTuple):
 
     #: Width and height of the picture.
     size: tuple[int, int]
-    #: Name of the surface that gets the lamps.
-    surface: str
+    #: The surfaces that receive lamps, and how.
+    layouts: list[Layout]
     camera: dict[str, Any]
     exposure: float
     #: The camera of the photo by the dragged grid, if it was dragged.
     by_grid: PhotoCamera | None = None
+    #: Distance from the plane and its error before lamps were reshaped, if they were.
+    distance: tuple[float, float] | None = None
+
+
+def is_plain_room(layouts: list[Layout]) -> bool:
+    """Whether the library alone makes the lit room and its schedule: one surface, and no lamp is dimmed or added."""
+    return len(layouts) == 1 and layouts[0].is_plain
+
+
+def listed(values: Iterable[Any]) -> str:
+    """Returns a list with one value on each line."""
+    lines = "".join(f"    {value!r},\n" for value in values)
+    return f"[\n{lines}]" if lines else "[]"
 
 
 def program(project: Project, chosen: Chosen) -> str:
     """Returns the text of the program."""
-    size, surface, camera, exposure, by_grid = chosen
+    size, layouts, camera, exposure, by_grid, distance = chosen
     strokes = []
     for stroke in project["strokes"]:
         phase, positive = PHASES[stroke["kind"]]
         points = list(zip(stroke["points"][::2], stroke["points"][1::2]))
-        strokes.append(f"    ({phase!r}, {points!r}, {max(stroke['radius'], 0.5)!r}, {positive!r}),\n")
+        strokes.append((phase, points, max(stroke["radius"], 0.5), positive))
     out = HEAD.format(
         photo=repr(project["photo"]["name"]),
         room=repr(project["room"]["name"]) if project["room"] else "None",
-        surface=repr(surface),
-        strokes="[\n" + "".join(strokes) + "]" if strokes else "[]",
+        surfaces=listed((one.surface, settings_of(project, one, distance), one.zones) for one in layouts),
+        strokes=listed(strokes),
     )
     if project["removed"]:
         out += REMOVED.format(removed=project["removed"], max_distance=MAX_LAMP_DISTANCE)
     if by_grid:
         out += GRID.format(axes=by_grid[0], focal=by_grid[1])
-    is_plain = mix.is_plain(project["mix"], project["added"])
-    if not is_plain:
-        out += MIX_HEAD.format(mix=project["mix"], added=project["added"])
+    if project["reshaped"]:
+        out += RESHAPED.format(reshaped=project["reshaped"], max_distance=MAX_LAMP_DISTANCE)
+    is_plain = is_plain_room(layouts)
     lit, schedule = PLAIN if is_plain else MIXED
-    fixtures = "transfer.fixtures" if is_plain else "(lamp for lamp, _ in mix.lamps(transfer.fixtures, *lamps))"
+    fixtures = "transfer.fixtures" if is_plain else "(lamp for one in placed for lamp, _ in mix.lamps(one))"
     return out + TAIL.format(
-        zones=project["zones"],
-        plane="rectify=plane, " if by_grid else "",
-        texture=texture_settings(project),
+        mix="" if is_plain else MIX_HEAD.format(changes=listed((one.mix, one.added) for one in layouts)),
+        plane=", rectify=plane" if by_grid else "",
         white=project["white"],
         relight=RELIGHT,
         lit=lit,

@@ -8,12 +8,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from . import grid, mix
-from .light import MAX_LAMP_DISTANCE
+from . import grid
+from .layout import Layout
 from .live import PHASES
 from .program import Chosen, PhotoCamera
 from .program_c import filled, floats, numbers, one_float, quoted
 from .project import Project
+from .reshape import BEYOND
+from .room import pattern_of
+from .shot import MAX_LAMP_DISTANCE
 
 SOURCE = Path(__file__).with_name("program.cpp")
 
@@ -44,9 +47,29 @@ def strokes_of(project: Project) -> str:
 
 def removed_of(project: Project) -> str:
     return (
-        "\n// A pixel on each lamp of the photo that was taken out; it may miss it by a share of the width.\n"
+        "\n// A pixel on each lamp of the photo that was taken out.\n"
         + places("std::array<double, 2>", "removed_lamps", project["removed"])
-        + f"constexpr double max_lamp_distance = {MAX_LAMP_DISTANCE!r};\n"
+    )
+
+
+def reshaped_of(project: Project) -> str:
+    values = [
+        f"{{{numbers(lamp['at'])}, {numbers(lamp['before'])}, {numbers(lamp['after'])}}}"
+        for lamp in project["reshaped"]
+    ]
+    return (
+        "\n/// A lamp of the photo that was moved, resized or turned: a pixel on it, and the corners of its rectangle\n"
+        "/// before and after. Its pixels may lie outside of the box of its corners by a share.\n"
+        "struct Reshaped {\n    std::array<double, 2> at;\n    std::array<double, 8> before, after;\n};\n"
+        + rows("Reshaped", "reshaped_lamps", values)
+        + f"constexpr double beyond_lamp = {BEYOND!r};\n"
+    )
+
+
+def distance_of() -> str:
+    return (
+        "/// A pixel may miss its lamp by this share of the width of the photo.\n"
+        f"constexpr double max_lamp_distance = {MAX_LAMP_DISTANCE!r};\n"
     )
 
 
@@ -63,32 +86,44 @@ def grid_of(by_grid: PhotoCamera) -> str:
     )
 
 
-def mix_of(project: Project) -> str:
-    dimmed = [f"{{{int(kind)}u, {factor!r}}}" for kind, factor in project["mix"].items()]
+def placements_of(layouts: list[Layout]) -> str:
+    values = []
+    for one in layouts:
+        pattern = pattern_of(one.pattern)
+        dimmers = ", ".join(f"{{{int(kind)}u, {factor!r}}}" for kind, factor in one.mix.items())
+        zones, added = (", ".join(map(numbers, values)) for values in (one.zones, one.added))
+        zones, added = (f"{{{text}}}" if text else "" for text in (zones, added))
+        values.append(
+            f"{{{quoted(one.surface)}, LUXFER_PATTERN_{pattern['scale'].upper()}, {pattern['length']!r}, "
+            f"{pattern['rotation']!r}, {numbers(pattern['offset'])}, {pattern['margin']!r},\n"
+            f"     {{{zones}}}, {{{dimmers}}}, {{{added}}}}}"
+        )
     return (
         "\n/// The factor of a kind of lamp.\nstruct Dimmer {\n    std::uint32_t kind;\n    double factor;\n};\n"
-        + rows("Dimmer", "dimmers", dimmed)
-        + "/// Added lamps: kind, u and v in metres on the surface.\n"
-        + places("std::array<double, 3>", "added_lamps", project["added"])
+        "/// A surface that receives lamps: the pattern on it, places without lamps (u0, v0, u1, v1 in metres), dimmed\n"
+        "/// kinds, and added lamps (kind, u and v in metres).\n"
+        "struct Placement {\n    const char *surface;\n    luxfer_pattern_scale scale;\n    double length, rotation;\n"
+        "    std::array<double, 2> offset;\n    double margin;\n    std::vector<std::array<double, 4>> zones;\n"
+        "    std::vector<Dimmer> dimmers;\n    std::vector<std::array<double, 3>> added;\n};\n"
+        + rows("Placement", "placements", values)
     )
 
 
 def data_of(project: Project, chosen: Chosen) -> str:
     """Returns the values of a project as C++."""
-    size, surface, camera, exposure, by_grid = chosen
+    size, layouts, camera, exposure, by_grid, _ = chosen
     room = project["room"]["name"] if project["room"] else ""
-    is_plain = mix.is_plain(project["mix"], project["added"])
     return "".join(
         [
             f"constexpr const char *photo_file = {quoted(project['photo']['name'])};\n",
             f"constexpr const char *room_file = {quoted(room)}; // empty: the generated room\n",
-            f"constexpr const char *surface_name = {quoted(surface)};\n\n",
+            "\n",
             strokes_of(project),
-            "\n// Places without lamps: u0, v0, u1, v1 in metres on the surface.\n",
-            places("std::array<double, 4>", "zones", project["zones"]),
+            placements_of(layouts),
             removed_of(project) if project["removed"] else "",
+            reshaped_of(project) if project["reshaped"] else "",
+            distance_of() if project["removed"] or project["reshaped"] else "",
             grid_of(by_grid) if by_grid else "",
-            "" if is_plain else mix_of(project),
             "\n// The picture.\n",
             f"constexpr std::uint32_t picture_width = {size[0]}, picture_height = {size[1]};\n",
             f"constexpr float camera_position[] = {floats(camera['position'])};\n",
@@ -101,4 +136,4 @@ def data_of(project: Project, chosen: Chosen) -> str:
 
 def program(project: Project, chosen: Chosen) -> str:
     """Returns the text of the program."""
-    return filled(SOURCE, project, chosen.by_grid, data_of(project, chosen))
+    return filled(SOURCE, project, chosen, data_of(project, chosen), ("params", "parts.relight"))

@@ -12,6 +12,8 @@ from typing import Any
 FORMAT = 1
 KINDS = ("plane", "not-plane", "light", "not-light")
 SCALES = ("distance", "lamp", "spacing", "across")
+#: Minimum area in square pixels of a reshaped lamp. [convention]
+MIN_AREA = 1e-3
 #: The library's maximum of paths per pixel, up to which a plan may go.
 MAX_SAMPLES = 1 << 20
 
@@ -24,12 +26,14 @@ DEFAULTS: Project = {
     "room": None,  # {"name", "sha256"}; None: the generated room
     "strokes": [],  # {"kind", "radius", "points": [x, y, x, y, ...]} in pixels of the photo
     "removed": [],  # [x, y] in the photo, on each lamp that was taken out of the mask
+    "reshaped": [],  # {"at": [x, y] on a lamp, "before", "after": x, y of its corners on the plane} in the photo
     "grid": None,  # x, y in the photo of the corners of a rectangle on the plane, in turn; None: found by the library
     "zones": [],  # [u0, v0, u1, v1] in metres on the surface, on each lamp that was taken out of the room
     "surface": None,  # name of the surface that receives the lights; None: the likeliest ceiling
     "pattern": {"scale": "distance", "length": 1.2, "rotation": 0.0, "offset": [0.0, 0.0], "keep_whole": False},
     "mix": {},  # for each kind of lamp, the factor of its light; 1 for kinds that are not named
     "added": [],  # [kind, u, v] in metres on the surface: a copy of a lamp of this kind
+    "others": [],  # {"surface", "pattern", "zones", "mix", "added"} of each further surface that receives lamps
     "lux_plane": {"surface": None, "height": 0.75},  # where the page shows lux: a surface, or a height above the floor
     "white": 100.0,  # luminance of the photo's white, cd/m²
     "camera": None,  # {"position", "target", "fov_y"}; None: the first camera of the room
@@ -140,24 +144,48 @@ def factors(low: float, high: float) -> Callable[[Any, str], dict[str, float]]:
 
 
 PIXEL, METRE = number(-1e5, 1e5), number(-1e6, 1e6)
+
+
+def corners(value: Any, name: str) -> list[float]:
+    """A check for the corners of a rectangle seen in perspective, in turn."""
+    numbers: list[float] = many(PIXEL, 8)(value, name)
+    points = list(zip(numbers[::2], numbers[1::2]))
+    turns = []
+    for i in range(4):
+        (x0, y0), (x1, y1), (x2, y2) = (points[(i + k) % 4] for k in range(3))
+        turns.append((x1 - x0) * (y2 - y1) - (y1 - y0) * (x2 - x1))
+    if not (min(turns) > MIN_AREA or max(turns) < -MIN_AREA):
+        raise Invalid(f"{name} are not the corners of a rectangle seen in perspective")
+    return numbers
+
+
 FILE = record(name=text, sha256=text)
+PATTERN = record(
+    scale=one_of(SCALES),
+    length=number(1e-3, 1e3),
+    rotation=number(-math.tau, math.tau),
+    offset=many(METRE, 2),
+    keep_whole=truth,
+)
+ZONES = many(many(METRE, 4), max_count=5000)
+ADDED = many(many(METRE, 3), max_count=1000)
+#: A transfer of the library has up to 16 planes.
+MAX_OTHERS = 15
 FIELDS = {
     "photo": FILE,
     "room": optional(FILE),
     "strokes": many(record(kind=one_of(KINDS), radius=number(1e-3, 4096), points=many(PIXEL)), max_count=5000),
     "removed": many(many(PIXEL, 2), max_count=5000),
+    "reshaped": many(record(at=many(PIXEL, 2), before=corners, after=corners), max_count=1000),
     "grid": optional(many(PIXEL, 8)),
-    "zones": many(many(METRE, 4), max_count=5000),
+    "zones": ZONES,
     "surface": optional(text),
-    "pattern": record(
-        scale=one_of(SCALES),
-        length=number(1e-3, 1e3),
-        rotation=number(-math.tau, math.tau),
-        offset=many(METRE, 2),
-        keep_whole=truth,
-    ),
+    "pattern": PATTERN,
     "mix": factors(0, 4),
-    "added": many(many(METRE, 3), max_count=1000),
+    "added": ADDED,
+    "others": many(
+        record(surface=text, pattern=PATTERN, zones=ZONES, mix=factors(0, 4), added=ADDED), max_count=MAX_OTHERS
+    ),
     "lux_plane": record(surface=optional(text), height=number(0, 100)),
     "white": number(1e-3, 1e6),
     "camera": optional(record(position=many(METRE, 3), target=many(METRE, 3), fov_y=number(0.01, 3))),
@@ -180,6 +208,9 @@ def checked(value: Any) -> Project:
     for i, stroke in enumerate(out["strokes"]):
         if len(stroke["points"]) % 2 or not stroke["points"]:
             raise Invalid(f"strokes[{i}].points has an x and a y for each point")
+    names = [out["surface"], *(other["surface"] for other in out["others"])]
+    if out["others"] and (None in names or len(set(names)) < len(names)):
+        raise Invalid("others names each further surface once, and surface is not one of them")
     return out
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -81,9 +82,9 @@ def _text(path: Path, text: str) -> None:
 
 
 def _program(path: Path, wanted: Wanted, light: Light, written: Callable[..., str]) -> None:
-    surface = wanted.project["surface"] or light.surface
     camera = light.camera(wanted.project)
-    chosen = program.Chosen(wanted.size, surface, camera, light.exposure, light.camera_by_grid)
+    shot = light.shot
+    chosen = program.Chosen(wanted.size, light.layouts, camera, light.exposure, shot.camera_by_grid, shot.kept_distance)
     _text(path, written(wanted.project, chosen))
 
 
@@ -109,27 +110,28 @@ def _png(path: Path, wanted: Wanted, light: Light) -> None:
 
 
 def _schedule(path: Path, wanted: Wanted, light: Light) -> None:
-    project = wanted.project
-    surface = light.room.find_surface(project["surface"] or light.surface)
-    mix.write_schedule(path, light.transfer, surface, project["mix"], project["added"])
+    mix.write_schedule(path, light.placed())
 
 
 def _photometry(path: Path, wanted: Wanted, light: Light) -> None:
     """Writes an IES, LDT, TM-33 and GLDF file of each kind of whole lamp, with the means of its lamps. The opening is
     flat and diffuse, like the lamps of the lit room."""
-    kinds: dict[int, list[luxfer.types.Fixture]] = {}
-    for lamp in light.transfer.fixtures:
-        if lamp.kind and mix.factor(wanted.project["mix"], lamp.kind) > 0:
-            kinds.setdefault(lamp.kind, []).append(lamp)
+    kinds: dict[str, tuple[float, list[luxfer.types.Fixture]]] = {}
+    all_placed = light.placed()
+    for placed in all_placed:
+        of_surface = f"{placed.layout.surface} " if len(all_placed) > 1 else ""
+        for lamp in placed.transfer.fixtures:
+            by = placed.layout.factor(lamp.kind)
+            if lamp.kind and by > 0:
+                name = re.sub(r"[^\w .-]", "_", f"{of_surface}kind {letter(lamp.kind)}")
+                kinds.setdefault(name, (by, []))[1].append(lamp)
     if not kinds:
         raise LookupError("there is no whole lamp: move the pattern until a lamp is not cut by the edge of the ceiling")
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as out:
-        for kind, lamps in sorted(kinds.items()):
+        for name, (by, lamps) in sorted(kinds.items()):
             numbers = [(*lamp.size, lamp.flux) for lamp in lamps]
             length, width, flux = (math.fsum(values) / len(lamps) for values in zip(*numbers))
-            flux *= mix.factor(wanted.project["mix"], kind)
-            name = f"kind {letter(kind)}"
-            product = Product.panel(light.context, length, width, flux, name)
+            product = Product.panel(light.context, length, width, by * flux, name)
             out.writestr(f"{name}.ies", product.photometry)
             with luxfer.Distribution.load_memory(light.context, product.photometry, "ies") as distribution:
                 for ending in ("ldt", "xml", "gldf"):

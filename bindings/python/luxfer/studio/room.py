@@ -25,9 +25,8 @@ def exposure_for(lux: float) -> float:
     return KEY * math.pi / (REFLECTANCE * lux) if lux > 1e-6 else 1.0
 
 
-def pattern_of(project: Project) -> dict[str, Any]:
-    """Returns the pattern of a project as settings of the library."""
-    pattern = project["pattern"]
+def pattern_of(pattern: dict[str, Any]) -> dict[str, Any]:
+    """Returns a pattern of a project as settings of the library."""
     return {
         "scale": pattern["scale"],
         "length": pattern["length"],
@@ -37,9 +36,11 @@ def pattern_of(project: Project) -> dict[str, Any]:
     }
 
 
-def texture_settings(project: Project) -> dict[str, Any]:
-    """Returns the settings of a transfer's texture."""
-    return {"max_texels": MAX_TEXELS, "pattern": pattern_of(project), "white_luminance": project["white"]}
+def texture_settings(project: Project, distance: tuple[float, float] | None = None) -> dict[str, Any]:
+    """Returns the settings of a transfer's texture but its pattern; `distance` is that from the plane, if lamps have
+    been reshaped."""
+    kept = {} if distance is None else {"plane_distance": distance[0]}
+    return {"max_texels": MAX_TEXELS, **kept, "white_luminance": project["white"]}
 
 
 def rectangle(room: luxfer.Scene, name: str) -> dict[str, Any] | None:

@@ -12,6 +12,9 @@ from .files import Files, Known
 
 GLTF = {".glb", ".gltf"}
 USD = {".usd", ".usda", ".usdc", ".usdz"}
+#: Endings of files that a room cannot do without: pictures and parts. Others, such as shaders of a program, are not
+#: used.
+NEEDED = USD | {".png", ".jpg", ".jpeg", ".exr", ".hdr", ".tif", ".tiff", ".tga", ".bmp", ".webp"}
 
 
 def is_usd(name: str) -> bool:
@@ -30,13 +33,18 @@ def converted(context: luxfer.Context, path: Path) -> bytes:
 
     folder = path.resolve().parent
     try:
-        layers, assets, _ = UsdUtils.ComputeAllDependencies(os.fspath(path))
+        layers, assets, missing = UsdUtils.ComputeAllDependencies(os.fspath(path))
     except Tf.ErrorException as error:
         raise ValueError(f"it is no USD file: {error}") from None
     for used in [layer.realPath for layer in layers] + list(assets):
         # A name inside a .usdz follows its path in brackets.
         if not Path(used.split("[")[0]).resolve().is_relative_to(folder):
             raise ValueError(f"it refers to {used}, which lies outside of its folder: save it as one .usdz")
+    lost = [Path(name).name for name in missing if Path(name).suffix.lower() in NEEDED]
+    if lost:
+        raise ValueError(
+            f"it refers to {lost[0]}, which is not there: save the room as one .usdz, or open it from its folder"
+        )
     return usd.load(context, path).to_bytes()
 
 

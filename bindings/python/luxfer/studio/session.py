@@ -197,8 +197,7 @@ class Session:
         if self.small is None or self.small[0] != sha256:
             self.small = sha256, LiveMasks(self.photo(wanted.project))
         live = self.small[1]
-        masks = live.follow(wanted.project, self.live)
-        self.send_live(live, masks, wanted)
+        live.follow(wanted.project, self.live, lambda masks: self.send_live(live, masks, wanted))
         if not wanted.is_draft:
             self.send("doubt", version=wanted.version, place=live.doubt())
 
