@@ -8,7 +8,7 @@
 # make trade  measures the error and the time of every stage over its settings, and writes the plots and Pareto fronts
 #             into the guide (runs the sections of the benches that draw them; make bench ONLY=stylit:knobs runs one)
 # make blender  builds the Blender extension, with the library inside, into out/blender/
-# make test-blender  runs all tests of the extension in a Blender without a window; make test runs the short ones
+# make test-blender  runs all tests of the extension; make test leaves out the one that builds and installs it
 # make studio   builds the page of the studio (node, npm) into the Python package; python -m luxfer.studio then serves
 #             it
 # make docs   builds the guide, with its pictures and the reference, into out/docs/
