@@ -250,3 +250,5 @@ def main() -> None:
 
 if __name__ == "__main__":
     main()
+    sys.stdout.flush()
+    os._exit(0)  # the module bpy 4.2.0 crashes while Python ends in the usual way
