@@ -1,5 +1,5 @@
 # make demo   builds the library and two C programs; runs a lighting transfer and a stylisation, which write into out/
-# make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask and mkdocs from PyPI), checks formatting,
+# make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask, Blender and mkdocs from PyPI), checks formatting,
 #             documentation, clippy and the oldest Rust, and runs every test
 # make lint   checks formatting, clippy, the API documentation and, if cargo-deny is installed, licences and advisories
 # make deny   checks the licences and sources of the dependencies alone, as make test does
@@ -8,6 +8,7 @@
 # make trade  measures the error and the time of every stage over its settings, and writes the plots and Pareto fronts
 #             into the guide (runs the sections of the benches that draw them; make bench ONLY=stylit:knobs runs one)
 # make blender  builds the Blender extension, with the library inside, into out/blender/
+# make test-blender  runs all tests of the extension; make test leaves out the one that builds and installs it
 # make studio   builds the page of the studio (node, npm) into the Python package; python -m luxfer.studio then serves
 #             it
 # make docs   builds the guide, with its pictures and the reference, into out/docs/
@@ -33,7 +34,7 @@ GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$
 
 TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
-.PHONY: all lib demo format doc clippy deny advisories msrv lint test bench trade blender studio studio-setup docs peers setup packages tools clean
+.PHONY: all lib demo format doc clippy deny advisories msrv lint test bench trade blender test-blender studio studio-setup docs peers setup packages tools clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -71,7 +72,7 @@ packages:
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
 tools: packages
-	@benches/peers/install.sh mitsuba python dask exr usd report exchange glare onnx docs studio deny
+	@benches/peers/install.sh mitsuba python dask exr usd report exchange glare onnx docs studio bpy deny
 	@$(MAKE) --no-print-directory studio-setup
 
 # Rustup's minimal profile lacks rustfmt and clippy. They are added if the Rust servers can be reached; otherwise the
@@ -143,6 +144,11 @@ trade:
 blender: lib
 	@benches/peers/install.sh python
 	@target/peers/python/bin/python bindings/blender/build.py out/blender
+
+test-blender: lib
+	@benches/peers/install.sh python bpy
+	@cd tests/blender && for name in first_result artworks layers add_on extension; do \
+	  LUXFER_LIBRARY=$(CURDIR)/$(LIB) ../../target/peers/bpy/bin/python -W ignore::DeprecationWarning -m unittest -v test_$$name || exit 1; done
 
 # The page of the studio. The lockfile states versions and checksums of the npm packages.
 PAGE := bindings/python/luxfer/studio/static/index.html

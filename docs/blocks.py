@@ -8,9 +8,9 @@
         runs the Python and shell blocks page by page; their pictures go into FOLDER
 
 A block consists either of `--8<--` lines only, which name parts of programs, or of Python or shell code. The Python
-blocks of a page form one program, and so do its shell blocks. Python runs in FOLDER/PAGE/. Shell runs in a tree of
-links that looks like the source tree after a build, so that it leaves no files in the source tree; `luxfer` is on its
-path as if the wheel were installed.
+blocks of a page form one program, and so do its shell blocks. Python runs in FOLDER/PAGE/, with copies of the photos
+(.jpg) of the page's folder in the guide. Shell runs in a tree of links that looks like the source tree after a build,
+so that it leaves no files in the source tree; `luxfer` is on its path as if the wheel were installed.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from __future__ import annotations
 import os
 import re
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -83,6 +84,8 @@ def run_python(page: Path, folder: Path, environment: dict[str, str]) -> int:
         return 0
     work = folder / page.relative_to(GUIDE).with_suffix("")
     work.mkdir(parents=True, exist_ok=True)
+    for photo in page.with_suffix("").glob("*.jpg"):
+        shutil.copy(photo, work)
     code = f"exec(compile(open(0).read(), {str(page)!r}, 'exec'), {{'__name__': '__main__'}})"
     return quiet([sys.executable, "-c", code], source, work, environment)
 

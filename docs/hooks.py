@@ -85,9 +85,18 @@ def on_page_markdown(markdown, page, config, files):
     path = page.file.src_uri
     if path.startswith("reference/"):
         return markdown
+    check_symptoms(markdown, path)
     parts = re.split(r"(^```.*?^```$)", markdown, flags=re.S | re.M)  # every other part is a block of code
     parts[::2] = [written(part, path, files) for part in parts[::2]]
     return "".join(parts)
+
+
+def check_symptoms(markdown: str, path: str) -> None:
+    """Checks that each symptom of a wrong result has a picture."""
+    for table in re.findall(r'^<div class="symptoms".*?^</div>', markdown, re.S | re.M):
+        for row in re.findall(r"^\|.*", table, re.M)[2:]:
+            if not re.match(r"\| !\[\]\(\S+\.png\) \|", row):
+                raise PluginError(f"{path}: a symptom has no picture: {row[:80]}")
 
 
 def written(text: str, path: str, files) -> str:

@@ -96,6 +96,15 @@ def stylise() -> Steps:
     yield from until_done()
     yield from show_image(left, painting.PICTURE)
     yield from take("stylise")
+    bpy.context.view_layer.objects.active = bpy.data.objects["Vase"]
+    with over(left):
+        bpy.ops.luxfer.sample_artwork("INVOKE_DEFAULT", style="pen", for_object=True)
+    yield from until_done()
+    with over(left):
+        bpy.ops.luxfer.stylise("INVOKE_DEFAULT")
+    yield from until_done()
+    yield from show_image(left, painting.PICTURE)
+    yield from take("artworks")
 
 
 def until_done() -> Steps:

@@ -36,6 +36,7 @@ int main(void) {
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
     luxfer_render_params params;
+    luxfer_render_report report;
     luxfer_image *image = NULL;
     luxfer_image_view view;
     luxfer_job *job = NULL;
@@ -54,9 +55,11 @@ int main(void) {
     check(luxfer_render_params_init(&params, sizeof params), "render");
     params.width = 240;
     params.height = 180;
-    params.samples = 24;
+    params.samples = 96; /* layers of light are not filtered */
     check(luxfer_render_start(render, &params, &job), "render");
     wait_and_release(job, "rendering");
+    check(luxfer_render_get_report(render, &report, sizeof report), "report");
+    printf("the picture has a root mean square error of %.1f %% of its mean\n", 100 * report.error);
 
     /* --8<-- [start:layers] */
     /* Get the picture, then the groups by their names. */

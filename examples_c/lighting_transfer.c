@@ -274,6 +274,7 @@ int main(int argc, char **argv) {
           "overview.png");
     printf("%u luminaires; colour and intensity to +-%.2f %%; see %s\n", report.fixtures, 100 * report.relight_error,
            path(&o, "overview.png"));
+    printf("the picture is filtered, with an error of %.1f %%\n", 100 * report.preview_error);
     print_warnings(warnings);
 
     luxfer_release(white);

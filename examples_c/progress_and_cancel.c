@@ -72,7 +72,8 @@ int main(void) {
     check(outcome, "picture");
     luxfer_release(job);
     /* --8<-- [end:start] */
-    printf("%u paths per pixel are in progress_and_cancel.png\n", report.samples);
+    printf("%u paths per pixel are in progress_and_cancel.png, with a standard error of %.1f %%\n", report.samples,
+           100 * report.error);
     luxfer_release(picture);
 
     /* 2. Waiting in a loop of the program: wait at most 16 ms, then draw a frame of the user interface. */

@@ -24,6 +24,7 @@ static luxfer_render *describe(luxfer_render_params *params) {
     params->width = 240;
     params->height = 180;
     params->samples = 16;
+    params->preview = 1; /* filter the noise after merging */
     luxfer_release(scene);
     return render;
 }
@@ -52,9 +53,10 @@ static void merge(luxfer_render *render, const luxfer_render_params *params, cha
 }
 /* --8<-- [end:merge] */
 
-/* Reads the pixels of the picture; the caller frees them. */
+/* Reads the pixels of the picture and saves the filtered picture; the caller frees the pixels. */
 static float *pixels(luxfer_render *render, luxfer_image_view *view) {
     luxfer_image *image = NULL;
+    luxfer_render_report report;
     check(luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, &image), "picture");
     check(luxfer_image_view_init(view, sizeof *view), "picture");
     check(luxfer_image_get_size(image, &view->width, &view->height, &view->channels), "picture");
@@ -62,8 +64,12 @@ static float *pixels(luxfer_render *render, luxfer_image_view *view) {
     view->data = malloc(view->byte_size);
     if (!view->data) exit(1);
     check(luxfer_image_read(image, 0, view), "picture");
+    luxfer_release(image);
+    check(luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, &image), "picture");
     check(luxfer_image_save(image, "render_parts.png", 1 / 450.0f), "render_parts.png");
     luxfer_release(image);
+    check(luxfer_render_get_report(render, &report, sizeof report), "report");
+    printf("look at render_parts.png; its root mean square error is %.1f %% of its mean\n", 100 * report.preview_error);
     return view->data;
 }
 

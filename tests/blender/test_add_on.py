@@ -173,6 +173,7 @@ class AddOn(unittest.TestCase):
                 return self
 
         self.load_photo()
+        bpy.context.view_layer.objects.active = bpy.data.objects["Ceiling"]
         work.start("Masks", lambda: (lighting.mask_steps(lighting.prepared(self.scene), lighting.photo_pixels(self.scene)), 1))
         for kind in panels.CLASSES:
             kind.draw(SimpleNamespace(layout=Layout()), bpy.context)
@@ -456,7 +457,7 @@ class AddOn(unittest.TestCase):
         for by_hand in (False, True):
             stylize = luxfer.Stylize(context, ball.demo_artwork("paint"))
             if by_hand:
-                passes.add_light(stylize, passes.light_of(ball), passes.light_of(table))
+                passes.add(stylize, *passes.exposed(passes.light_of(ball), passes.light_of(table)))
             else:
                 stylize.add_guides(ball, table)
             pictures.append(stylize.run(preset="fast").image().numpy())

@@ -5,7 +5,7 @@ from __future__ import annotations
 import bpy
 import luxfer
 
-from . import lighting, live, painting, work
+from . import artworks, lighting, live, painting, work
 
 
 #: Icons in the colours of the strokes: icons of bone colour sets, which every version of Blender has.
@@ -66,6 +66,19 @@ def show_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, warnin
         draw_text(box, context, f"{warning.message[:1].upper()}{warning.message[1:]}.")
         at = "" if warning.place is None else f", at {warning.place[0]:.0f}, {warning.place[1]:.0f} from the photo's top left"
         draw_text(box, context, f"{warning.advice[:1].upper()}{warning.advice[1:]}{at}.")
+
+
+def show_object(box: bpy.types.UILayout, thing: bpy.types.Object, has_parts: bool) -> None:
+    """Shows how the active object is painted: like which part, and by which artwork."""
+    box.label(text=thing.name, icon="OBJECT_DATA")
+    if has_parts:
+        box.prop(thing, "luxfer_paint_as")
+    box.label(text="Artwork of its own")
+    box.template_ID(thing, "luxfer_artwork", open="image.open")
+    box.operator_menu_enum("luxfer.sample_artwork", "style").for_object = True
+    inherited = artworks.of(thing)
+    if inherited is not None and thing.luxfer_artwork is None:
+        box.label(text=f"From its parent: {inherited.name}")
 
 
 class Sidebar:
@@ -134,8 +147,8 @@ class PaintingPanel(Sidebar):
         row.enabled = settings.guides_by == "LUXFER"
         row.prop(settings, "guide_edges")
         column.prop(settings, "guide_parts")
-        if settings.guide_parts and context.object is not None:
-            column.prop(context.object, "luxfer_paint_as", text=context.object.name)
+        if context.object is not None:
+            show_object(layout.box(), context.object, settings.guide_parts)
         layout.operator("luxfer.stylise", icon="BRUSH_DATA")
         draw_text(layout, context, f"The picture is the image {painting.PICTURE}")
         show_progress(layout, context)

@@ -28,14 +28,15 @@ def extent(thing: bpy.types.Object) -> np.ndarray:
     return np.array([corners.min(axis=0), corners.max(axis=0)])
 
 
+def is_seen(thing: bpy.types.Object) -> bool:
+    """Whether an object has surfaces that are rendered."""
+    return thing.type in ("MESH", "CURVE", "SURFACE", "META", "FONT") and not thing.hide_render
+
+
 def of(source: bpy.types.Scene) -> dict[str, str]:
     """Returns the name of the material of the exemplar for each object of a scene. Without a choice by the user, an
     object belongs to the surroundings if it is large along at least two axes, and is flat or has the camera in it."""
-    extents = {
-        thing.name: extent(thing)
-        for thing in source.objects
-        if thing.type in ("MESH", "CURVE", "SURFACE", "META", "FONT") and not thing.hide_render
-    }
+    extents = {thing.name: extent(thing) for thing in source.objects if is_seen(thing)}
     if not extents:
         return {}
     every = np.array(list(extents.values()))

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import bpy
@@ -29,10 +30,16 @@ NUMBERS = {BALL: 1, TABLE: 2}
 
 class Rendering:
     """A running rendering of guides for a scene's active camera. Only the constructor accesses Blender's data, and it
-    only reads. After `light`, `parts` is an image of the NUMBERS of the parts of the exemplar."""
+    only reads. After `light`, `parts` is an image of the NUMBERS of the parts of the exemplar, and `covers` are images
+    of the share of each pixel that each of the groups of objects covers."""
 
     def __init__(
-        self, scene: bpy.types.Scene, layer: bpy.types.ViewLayer, samples: int, parts: dict[str, str] | None = None
+        self,
+        scene: bpy.types.Scene,
+        layer: bpy.types.ViewLayer,
+        samples: int,
+        parts: dict[str, str] | None = None,
+        groups: Sequence[Iterable[str]] = (),
     ):
         numbers = {name: NUMBERS[part] for name, part in (parts or {}).items()}
         self._folder = tempfile.TemporaryDirectory(prefix="luxfer-")
@@ -40,7 +47,7 @@ class Rendering:
         blend = os.path.join(self._folder.name, "scene.blend")
         bpy.ops.wm.save_as_mainfile(filepath=blend, copy=True, check_existing=False, compress=False)
         settings = {"blend": blend, "scene": scene.name, "layer": layer.name, "samples": samples}
-        settings.update(parts=numbers, out=str(self._out))
+        settings.update(parts=numbers, groups=[sorted(names) for names in groups], out=str(self._out))
         blender = [bpy.app.binary_path, "--background", "--python-exit-code", "1", "--python"]
         if not bpy.app.binary_path:  # bpy runs as a Python module
             blender = [sys.executable, "-P"]  # -P keeps Python from importing the files beside the program
@@ -101,7 +108,7 @@ class Rendering:
         """The guides by the names of GUIDES, (height, width, 3), rows from the top."""
         with np.load(self._out) as stored:
             out = {name: stored[name] for name in GUIDES}
-            self.parts = stored["parts"]
+            self.parts, self.covers = stored["parts"], list(stored["covers"])
         self.close()
         return out
 
@@ -119,27 +126,36 @@ def light_of(guides: luxfer.Guides) -> dict[str, np.ndarray]:
     return {name: guides.image(which).numpy() for name, which in GUIDES.items()}
 
 
-def add_light(stylize: luxfer.Stylize, source: dict[str, np.ndarray], target: dict[str, np.ndarray]) -> None:
-    """Adds the guides of two scenes to a stylisation at a common exposure, as Stylize.add_guides does, whichever
-    renderer made them. The exposure maps the luminance below which nine tenths of both full pictures lie to 0.8;
-    values above 1 become 1."""
+def exposed(source: dict[str, np.ndarray], target: dict[str, np.ndarray]) -> list[dict[str, np.ndarray]]:
+    """The light of two scenes at a common exposure, as Stylize.add_guides exposes it, whichever renderer made it. The
+    exposure maps the luminance below which nine tenths of both full pictures lie to 0.8; values above 1 become 1."""
     luma = np.float32((0.2126, 0.7152, 0.0722))
     luminances = np.concatenate([(light["full"] @ luma).ravel() for light in (source, target)])
     luminances = luminances[np.isfinite(luminances)]
     rank = (max(luminances.size, 1) - 1) * 9 // 10
     bright = np.partition(luminances, rank)[rank] if luminances.size else 0.0
     exposure = np.float32(0.8 / bright if bright > 0 else 1)
-    for name in GUIDES:
-        stylize.add_guide(name, *(np.minimum(light[name] * exposure, 1) for light in (source, target)))
+    return [{name: np.minimum(light[name] * exposure, 1) for name in GUIDES} for light in (source, target)]
 
 
-def add_parts(stylize: luxfer.Stylize, source: luxfer.Guides, parts: np.ndarray) -> None:
-    """Adds the guide of materials for an image of the NUMBERS of parts. Most of the exemplar shows the table, and the
-    rest of it the ball."""
-    codes = source.image("materials").numpy()
-    colours, counts = np.unique(codes.reshape(-1, 3), axis=0, return_counts=True)
-    table, ball = colours[np.argsort(-counts)][:2]
-    wanted = np.zeros((*parts.shape, 3), np.float32)
-    for part, colour in ((BALL, ball), (TABLE, table)):
-        wanted[np.round(parts) == NUMBERS[part]] = colour
-    stylize.add_guide("materials", codes, wanted, 1.0, "data")
+def add(stylize: luxfer.Stylize, source: dict[str, np.ndarray], target: dict[str, np.ndarray]) -> None:
+    """Adds guides: the light at its exposure, and all others as data."""
+    for name in source:
+        kind = "light" if name in GUIDES else "data"
+        stylize.add_guide(name, source[name], np.ascontiguousarray(target[name]), 1.0, kind)
+
+
+def colours(codes: np.ndarray) -> dict[str, np.ndarray]:
+    """The colours that the parts of the exemplar have in its image of materials. Most of the exemplar shows the table,
+    and the rest of it the ball."""
+    found, counts = np.unique(codes.reshape(-1, 3), axis=0, return_counts=True)
+    table, ball = found[np.argsort(-counts)][:2]
+    return {BALL: ball, TABLE: table}
+
+
+def coded(colours: dict[str, np.ndarray], parts: np.ndarray) -> np.ndarray:
+    """The image of materials for an image of the NUMBERS of parts."""
+    out = np.zeros((*parts.shape, 3), np.float32)
+    for part, colour in colours.items():
+        out[np.round(parts) == NUMBERS[part]] = colour
+    return out

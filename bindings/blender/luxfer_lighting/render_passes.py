@@ -4,7 +4,8 @@
     python render_passes.py -- SETTINGS                             with a Python that has bpy
 
 SETTINGS is JSON: "blend", "scene", "layer" (a view layer), "samples", "parts" (a number for each name of an object; the
-file has the image "parts" of these numbers, 0 elsewhere), "out" (an .npz file). Before each rendering, the
+file has the image "parts" of these numbers, 0 elsewhere), "groups" (lists of names of objects; the file has in "covers"
+an image for each group, the share of each pixel that it covers), "out" (an .npz file). Before each rendering, the
 program prints a line "part FIRST LAST": the range of the whole work's progress that the rendering covers. Cycles
 prints its own progress. The passes as light path expressions, in the notation of luxfer's guides:
 
@@ -35,7 +36,9 @@ import numpy as np
 #: The guides in luxfer's order: the name of each guide, and of its image in luxfer.Guides.
 GUIDES = {"full": "full", "direct": "direct", "specular": "specular", "indirect": "indirect", "two bounces": "two-bounces"}
 LIGHT_PASSES = ("combined", "diffuse_direct", "diffuse_indirect", "diffuse_color", "glossy_direct", "glossy_color")
-PASSES = (*LIGHT_PASSES, "normal", "material_index", "object_index")
+PASSES = (*LIGHT_PASSES, "normal", "material_index", "object_index", "cryptomatte_object")
+#: The layers of Cryptomatte, each with two numbers of objects and their shares of the pixel.
+CRYPTOMATTE = "CryptoObject"
 #: The names of passes before Blender 5.0.
 LONG = {
     "DiffDir": "Diffuse Direct",
@@ -50,7 +53,8 @@ LONG = {
 
 def read_exr(path: Path) -> dict[str, np.ndarray]:
     """Reads the layers of an uncompressed OpenEXR file of floats in one part, as Blender writes it. Returns an array
-    (channels, height, width) by the name of each pass; the channels are in the order RGBA or XYZ."""
+    (channels, height, width) by the name of each pass; the channels are in the order RGBA or XYZ. Adds the number of
+    each object of Cryptomatte as "number of NAME"."""
     data = path.read_bytes()
     at = 8  # after magic number and version
     attributes: dict[str, bytes] = {}
@@ -73,8 +77,29 @@ def read_exr(path: Path) -> dict[str, np.ndarray]:
     layers: dict[str, dict[str, np.ndarray]] = {}
     for i, full in enumerate(names):
         _, layer, channel = full.rsplit(".", 2)
-        layers.setdefault(layer, {})[channel] = values[:, i]
-    return {LONG.get(name, name): np.stack([c[k] for k in "RGBXYZVA" if k in c]) for name, c in layers.items()}
+        layers.setdefault(layer, {})[channel.upper()] = values[:, i]
+    out = {LONG.get(name, name): np.stack([c[k] for k in "RGBXYZVA" if k in c]) for name, c in layers.items()}
+    return {**out, **{f"number of {name}": number for name, number in numbers_of(attributes).items()}}
+
+
+def numbers_of(attributes: dict[str, bytes]) -> dict[str, np.ndarray]:
+    """The number that Cryptomatte gives to each object, from the attributes of its file."""
+    for name, text in attributes.items():
+        if name.startswith("cryptomatte/") and name.endswith("/manifest"):
+            numbers = json.loads(text)
+            return {key: np.uint32(int(code, 16)).reshape(1).view(np.float32)[0] for key, code in numbers.items()}
+    return {}
+
+
+def cover(passes: dict[str, np.ndarray], names: list[str]) -> np.ndarray:
+    """The share of each pixel that the named objects cover."""
+    numbers = {float(passes[f"number of {name}"]) for name in names if f"number of {name}" in passes}
+    out = np.zeros(passes["Combined"].shape[1:], np.float32)
+    for layer, values in passes.items():
+        if layer.startswith(CRYPTOMATTE):
+            for number, share in ((values[0], values[1]), (values[2], values[3])):
+                out += np.where(np.isin(number, list(numbers)), share, 0)
+    return np.minimum(out, 1)
 
 
 def smooth(lights: list[np.ndarray], normals: np.ndarray, material: np.ndarray) -> list[np.ndarray]:
@@ -188,8 +213,11 @@ def render(scene: bpy.types.Scene, first: float, last: float) -> dict[str, np.nd
         return read_exr(Path(scene.render.filepath))
 
 
-def guides(scene: bpy.types.Scene, layer: str, samples: int, parts: dict[str, int]) -> dict[str, np.ndarray]:
-    """Renders the guides: arrays (height, width, 3) in Blender's units of radiance; and the image "parts"."""
+def guides(
+    scene: bpy.types.Scene, layer: str, samples: int, parts: dict[str, int], groups: list[list[str]]
+) -> dict[str, np.ndarray]:
+    """Renders the guides: arrays (height, width, 3) in Blender's units of radiance; and the images "parts" and
+    "covers"."""
     set_up(scene, layer, samples, parts)
     bpy.app.handlers.render_stats.append(print_progress)
     found = render(scene, 0.0, 0.6)
@@ -205,7 +233,8 @@ def guides(scene: bpy.types.Scene, layer: str, samples: int, parts: dict[str, in
     light["two bounces"] = (short["Diffuse Direct"] + short["Diffuse Indirect"]) * short["Diffuse Color"]
     smoothed = smooth(list(light.values()), found["Normal"], found["Material Index"][0])
     out = {name: np.moveaxis(values, 0, 2) for name, values in zip(light, smoothed)}
-    return {**out, "parts": found["Object Index"][0]}
+    covers = np.array([cover(found, names) for names in groups])
+    return {**out, "parts": found["Object Index"][0], "covers": covers}
 
 
 def main() -> None:
@@ -215,8 +244,11 @@ def main() -> None:
     addon_utils.enable("cycles")  # the user may have disabled it
     bpy.ops.wm.open_mainfile(filepath=settings["blend"], load_ui=False)
     scene = bpy.data.scenes[settings["scene"]]
-    np.savez(settings["out"], **guides(scene, settings["layer"], settings["samples"], settings["parts"]))
+    found = guides(scene, settings["layer"], settings["samples"], settings["parts"], settings["groups"])
+    np.savez(settings["out"], **found)
 
 
 if __name__ == "__main__":
     main()
+    sys.stdout.flush()
+    os._exit(0)  # the module bpy 4.2.0 crashes while Python ends in the usual way

@@ -125,9 +125,15 @@ def register() -> None:
         ),
         description="Part of the artwork whose paint this object gets",
     )
+    bpy.types.Object.luxfer_artwork = PointerProperty(
+        type=bpy.types.Image,
+        name="Artwork",
+        description="The exemplar after painting for this object and for the objects parented to it, if it is not that of the scene",
+    )
 
 
 def unregister() -> None:
+    del bpy.types.Object.luxfer_artwork
     del bpy.types.Object.luxfer_paint_as
     del bpy.types.Scene.luxfer
     bpy.utils.unregister_class(LuxferSettings)
