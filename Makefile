@@ -1,6 +1,6 @@
 # make demo   builds the library and two C programs; runs a lighting transfer and a stylisation, which write into out/
-# make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask, Blender and mkdocs from PyPI), checks formatting,
-#             documentation, clippy and the oldest Rust, and runs every test
+# make test   sets up what is missing (Debian packages; Mitsuba, numpy, Dask, Blender and mkdocs from PyPI), checks
+#             formatting, documentation, clippy and the oldest Rust, and runs every test
 # make lint   checks formatting, clippy, the API documentation and, if cargo-deny is installed, licences and advisories
 # make deny   checks the licences and sources of the dependencies alone, as make test does
 # make msrv   checks that the oldest Rust of Cargo.toml (rust-version) compiles the library; rustup installs it

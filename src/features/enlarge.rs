@@ -15,7 +15,7 @@ const MAX_GROWTH_UNCERTAIN: f64 = 4.0;
 
 /// A region like a lamp beyond the face that carries the lamps.
 #[derive(Clone, Copy, Debug)]
-pub struct Beyond<'a> {
+pub struct RegionBeyond<'a> {
     /// Its pixels, as row-major indices.
     pub pixels: &'a [u32],
     /// Whether it continues a regular row of lamps.
@@ -27,7 +27,7 @@ pub struct LampsBeyond<'a> {
     /// Mask of the lamps.
     pub mask: &'a Image,
     /// The regions beyond the face.
-    pub beyond: &'a [Beyond<'a>],
+    pub beyond: &'a [RegionBeyond<'a>],
     /// Whether the layout of the room is uncertain. It may then be enlarged by a larger factor.
     pub is_uncertain: bool,
     /// Whether to leave out a region that alone would enlarge the room too much: it may be no lamp.
@@ -36,10 +36,10 @@ pub struct LampsBeyond<'a> {
 
 impl Layout {
     /// Moves the other faces of the room away until the face that carries the lamps contains the regions beyond it.
-    /// Leaves out regions that alone would enlarge the room too much, if `lamps.may_leave_out` allows it. If a face would
-    /// still have to move too far ([`MAX_GROWTH`]), leaves out all regions that continue no regular row. Returns the new
-    /// room and the indices of the regions that it contains; `None` if no region remains, or if a face would have to move
-    /// too far.
+    /// Leaves out regions that alone would enlarge the room too much, if `lamps.may_leave_out` allows it. If a face
+    /// would still have to move too far ([`MAX_GROWTH`]), leaves out all regions that continue no regular row. Returns
+    /// the new room and the indices of the regions that it contains; `None` if no region remains, or if a face would
+    /// have to move too far.
     pub fn enlarged_for(&self, perspective: &Perspective, lamps: &LampsBeyond) -> Option<(Self, Vec<usize>)> {
         let face = self.face_of(perspective, marked(lamps.mask));
         let enlarged = |regions: &[usize]| {

@@ -50,7 +50,7 @@ mod tests;
 mod warnings;
 
 pub use box_room::{Face, Layout};
-pub use enlarge::{Beyond, LampsBeyond};
+pub use enlarge::{LampsBeyond, RegionBeyond};
 pub use frustum::Frustum;
 pub use grow::Surfaces;
 pub use input::{CHANNELS, DepthKind, DepthMap, DepthSource, Input, NORMAL, POSITION, Params, PlaneStroke, RoomView};

@@ -389,7 +389,7 @@ fn lamps_that_continue_regular_rows_may_enlarge_a_room_further_than_others() {
     mask.data[pixel(DVec3::new(0.1, -0.4, 0.95)) as usize] = 1.0;
     let regions = [[pixel(DVec3::new(0.1, -0.4, 1.4))], [pixel(DVec3::new(0.3, -0.4, 1.4))]];
     let enlarged = |regular: [bool; 2]| {
-        let beyond = [0, 1].map(|k| Beyond { pixels: &regions[k], is_in_regular_row: regular[k] });
+        let beyond = [0, 1].map(|k| RegionBeyond { pixels: &regions[k], is_in_regular_row: regular[k] });
         let lamps = LampsBeyond { mask: &mask, beyond: &beyond, is_uncertain: false, may_leave_out: false };
         small.enlarged_for(&camera, &lamps).map(|(_, held)| held)
     };

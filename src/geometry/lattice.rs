@@ -1,7 +1,7 @@
 //! Lattices in the plane, and lattices seen in perspective.
 //!
-//! A lattice in perspective ("Detection, Rectification and Segmentation of Coplanar Repeated Patterns", Pritts, Chum and
-//! Matas, CVPR 2014) is found from the centres of the spots on its sites: it grows from one cell of four spots.
+//! A lattice in perspective ("Detection, Rectification and Segmentation of Coplanar Repeated Patterns", Pritts, Chum
+//! and Matas, CVPR 2014) is found from the centres of the spots on its sites: it grows from one cell of four spots.
 
 use super::{Homography, linear};
 use crate::maths;
@@ -48,8 +48,8 @@ pub fn reduced([mut a, mut b]: [DVec2; 2]) -> [DVec2; 2] {
 #[derive(Clone, Copy, Debug)]
 pub struct Spot {
     pub centre: DVec2,
-    /// Inverse of the covariance of the spot's pixels. Distances measured in units of the spot's extent hardly depend on
-    /// the tilt of its plane.
+    /// Inverse of the covariance of the spot's pixels. Distances measured in units of the spot's extent hardly depend
+    /// on the tilt of its plane.
     pub inverse: DMat2,
 }
 
@@ -86,8 +86,8 @@ fn cells(spots: &[Spot], first: usize) -> Vec<[usize; 4]> {
 /// A lattice seen in perspective.
 #[derive(Clone, Debug)]
 pub struct SeenLattice {
-    /// For each spot, the number of steps from the first spot along the two axes of the lattice; `None` if it lies on no
-    /// site.
+    /// For each spot, the number of steps from the first spot along the two axes of the lattice; `None` if it lies on
+    /// no site.
     pub steps: Vec<Option<DVec2>>,
     /// Maps lattice steps to the centres of the spots in the image.
     pub to_image: Homography,
@@ -139,16 +139,16 @@ impl SeenLattice {
         self.steps.iter().flatten().count()
     }
 
-    /// Returns the coordinates of a point of the image in lattice steps; `None` if the horizon of the plane separates it
-    /// from the first cell.
-    pub fn place(&self, point: DVec2) -> Option<DVec2> {
+    /// Returns the coordinates of a point of the image in lattice steps; `None` if the horizon of the plane separates
+    /// it from the first cell.
+    fn place(&self, point: DVec2) -> Option<DVec2> {
         let first = self.to_image.apply(DVec2::ZERO);
         let [here, first] = [point, first].map(|at| self.to_image.inverse().apply_homogeneous(at));
         (here.z * first.z > 0.0).then(|| here.truncate() / here.z).filter(|place| place.is_finite())
     }
 
     /// Returns the free site, beside an occupied one, on which a point of the image lies.
-    pub fn free_site(&self, point: DVec2) -> Option<DVec2> {
+    fn free_site(&self, point: DVec2) -> Option<DVec2> {
         let place = self.place(point)?;
         let site = place.round();
         let occupied = || self.steps.iter().flatten();

@@ -125,9 +125,9 @@ pub fn irradiance_in_air<S: PathSink>(
     }
 }
 
-/// Renders the view of a camera. Calls `publish` with the film after the first pass, at the end and, without a preview, on
-/// cancellation. In between, calls it after a pass if at least ten times the duration of the last publication has passed.
-/// Call `run` on the library's own thread pool.
+/// Renders the view of a camera. Calls `publish` with the film after the first pass, at the end and, without a preview,
+/// on cancellation. In between, calls it after a pass if at least ten times the duration of the last publication has
+/// passed. Call `run` on the library's own thread pool.
 ///
 /// Without an error target, the estimate of each pixel is unbiased. With a target, earlier paths decide which pixels
 /// get further paths; pixels with rare bright paths then come out too dark by a small part of their standard error
@@ -139,8 +139,8 @@ pub fn irradiance_in_air<S: PathSink>(
 pub fn run(world: &World, camera: &Camera, params: &Params, job: Job, publish: &mut dyn FnMut(&Film)) -> Result<Film> {
     params.check()?;
     check_camera(camera)?;
-    // Assemble films with a separate job, because they are also needed after cancellation. But do not filter them then: a
-    // cancelled job must end soon.
+    // Assemble films with a separate job, because they are also needed after cancellation. But do not filter them then:
+    // a cancelled job must end soon.
     let always = Monitor::default();
     let mut clock = Clock::start(params.time_budget_ms);
     let guided = preview::guided(params);

@@ -111,8 +111,8 @@ impl Transfer {
         Ok(())
     }
 
-    /// Returns a view in which all lamps, once unwarped, have the same size and shape or lie on a lattice; `None` if the
-    /// caller has set the view, or if the lamps do not fit another view clearly better.
+    /// Returns a view in which all lamps, once unwarped, have the same size and shape or lie on a lattice; `None` if
+    /// the caller has set the view, or if the lamps do not fit another view clearly better.
     pub(super) fn corrected_view(&self, job: Job) -> Result<Option<rectify::View>> {
         let Results { view: Some(view), plane: Some(plane), lights: Some(lights), .. } = &self.results else {
             return Ok(None);
@@ -148,9 +148,11 @@ impl Transfer {
         let Some(layout) = features.layout else { return Ok(false) };
         let is_proposed = plane.is_proposed && self.input.strokes.plane.is_empty();
         let beyond = lights.beyond.iter();
-        let beyond = beyond
-            .map(|lamp| features::Beyond { pixels: &lamp.region.pixels, is_in_regular_row: lamp.is_in_regular_row });
-        let beyond: Vec<features::Beyond> = beyond.collect();
+        let beyond = beyond.map(|lamp| features::RegionBeyond {
+            pixels: &lamp.region.pixels,
+            is_in_regular_row: lamp.is_in_regular_row,
+        });
+        let beyond: Vec<features::RegionBeyond> = beyond.collect();
         let lamps = features::LampsBeyond {
             mask: &lights.mask,
             beyond: &beyond,

@@ -13,8 +13,8 @@ use glam::DVec2;
 
 /// Regions with fewer pixels than this are ignored, because the pixel grid dominates their form. [bench photos:tune]
 const MIN_PIXELS: f64 = 12.0;
-/// `LATTICE_FOCALS`: number of focal lengths on either side of the expected focal length for which the tilt of a lattice
-/// is tried. `LATTICE_FOCAL_STEP`: logarithm of the ratio between neighbouring focal lengths. [convention]
+/// `LATTICE_FOCALS`: number of focal lengths on either side of the expected focal length for which the tilt of a
+/// lattice is tried. `LATTICE_FOCAL_STEP`: logarithm of the ratio between neighbouring focal lengths. [convention]
 const LATTICE_FOCALS: i32 = 10;
 const LATTICE_FOCAL_STEP: f64 = 0.1;
 

@@ -3,21 +3,20 @@
 //! The centres of the lamps are the images of lattice sites under a homography, which shows the horizon of the plane.
 //! Bloom and overexposure change the shapes of lamps, but hardly their centres.
 
-use super::likeness::onto_plane;
 use super::tilt::Tilt;
 use crate::geometry::lattice::{SeenLattice, Spot, reduced};
 use crate::geometry::{Homography, linear};
 use crate::maths;
 use glam::{DMat2, DVec2, DVec3};
 
-/// Standard deviation of a lamp's centre: in photo pixels (`CENTRE_ERROR`), and in lattice steps (`SITE_ERROR`), because
-/// ceilings are built with tolerances. [bench photos:tune]
+/// Standard deviation of a lamp's centre: in photo pixels (`CENTRE_ERROR`), and in lattice steps (`SITE_ERROR`),
+/// because ceilings are built with tolerances. [bench photos:tune]
 const CENTRE_ERROR: f64 = 0.5;
 const SITE_ERROR: f64 = 0.015;
-/// Most lattices of lamps are symmetric. A lattice with a right angle between its shortest steps costs
-/// `(deviation / ASYMMETRY)²`, where the deviation is the cosine of the angle. Lattices with equally long steps, and
-/// lattices of which every second row is shifted by half a step, are rarer and cost `RARE_SYMMETRY_COST` more. No lattice
-/// costs more than `MAX_ASYMMETRY_COST`. [bench photos:tune]
+/// Most lattices of lamps are symmetric. A lattice with a right angle between its shortest steps costs `(deviation /
+/// ASYMMETRY)²`, where the deviation is the cosine of the angle. Lattices with equally long steps, and lattices of
+/// which every second row is shifted by half a step, are rarer and cost `RARE_SYMMETRY_COST` more. No lattice costs
+/// more than `MAX_ASYMMETRY_COST`. [bench photos:tune]
 const ASYMMETRY: f64 = 0.03;
 const RARE_SYMMETRY_COST: f64 = 4.0;
 const MAX_ASYMMETRY_COST: f64 = 8.0;
@@ -44,8 +43,8 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Finds the lattice on which most of the lamps lie; `None` if there is none. The centres of `lamps` are relative to
-    /// the principal point, in pixels of the photo that an ideal lens would take; the largest lamps must come first.
+    /// Finds the lattice on which most of the lamps lie; `None` if there is none. The centres of `lamps` are relative
+    /// to the principal point, in pixels of the photo that an ideal lens would take; the largest lamps must come first.
     pub fn find(lamps: &[Spot]) -> Option<Self> {
         let seen = SeenLattice::find(lamps)?;
         let sites = seen.steps.iter().zip(lamps).filter_map(|(steps, lamp)| {
@@ -95,7 +94,7 @@ impl Lattice {
         let (mut gram, mut right) = ([[0.0; 6]; 6], [0.0; 6]);
         let mut placed = Vec::with_capacity(self.sites.len());
         for site in &self.sites {
-            let (point, jacobian) = onto_plane(site.centre, tilt)?;
+            let (point, jacobian) = tilt.project(site.centre)?;
             let weight = (jacobian * jacobian.transpose() * site.variance).inverse();
             // The unknowns are the first lamp's place and the two steps, for x and then for y.
             let terms = [1.0, site.steps.x, site.steps.y];

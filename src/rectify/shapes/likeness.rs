@@ -5,7 +5,7 @@ use super::tilt::Tilt;
 use crate::geometry::Radial;
 use crate::geometry::robust::weighted_median;
 use crate::maths;
-use glam::{DMat2, DVec2, DVec3};
+use glam::{DMat2, DVec2};
 
 /// Standard deviation, in photo pixels, of the position of a region's border, caused by blur and bloom.
 /// [bench photos:tune]
@@ -14,9 +14,6 @@ const BORDER_ERROR: f64 = 0.7;
 const VARIETY: f64 = 0.08;
 /// Only this number of the largest regions is used: more regions take time and add no certainty. [bench photos:tune]
 pub const MAX_SHAPES: usize = 32;
-/// A tilt of the plane is rejected if the sine of the angle between the plane and the ray through a shape's centre is
-/// below this. [bench photos:tune]
-const MIN_INCIDENCE: f64 = 0.05;
 /// Cost of the assumption that all lamps are elongated by the same ratio in the same direction. The cost is needed
 /// because this assumption adds two parameters, and most lamps are as long as they are wide. [bench photos:tune]
 const STRETCH_COST: f64 = 6.0;
@@ -93,25 +90,10 @@ impl Shape {
     /// Returns the form of the shape on the plane at distance 1 from the camera. `None` if the ray to the shape misses
     /// the plane or meets it at too small an angle.
     fn on_plane(&self, tilt: &Tilt, bloom: usize) -> Option<Form> {
-        let (_, jacobian) = onto_plane(self.centre, tilt)?;
+        let (_, jacobian) = tilt.project(self.centre)?;
         let ([long, short], angle) = axes(jacobian * self.covariances[bloom] * jacobian.transpose());
         Some(Form { log_size: 0.5 * maths::ln(long * short), stretch: angle * (0.5 * maths::ln(long / short)) })
     }
-}
-
-/// Projects a pixel, given relative to the principal point, onto the plane at distance 1 from the camera. Returns the
-/// point in coordinates of the plane, and the derivative of these coordinates by the pixel. `None` if the ray misses
-/// the plane or meets it at too small an angle.
-pub fn onto_plane(pixel: DVec2, &Tilt { normal, focal }: &Tilt) -> Option<(DVec2, DMat2)> {
-    let ray = (pixel / focal).extend(1.0);
-    let depth = normal.dot(ray);
-    if !(depth >= MIN_INCIDENCE * ray.length()) {
-        return None;
-    }
-    let (right, down) = normal.any_orthonormal_pair();
-    let on_plane = |v: DVec3| DVec2::new(right.dot(v), down.dot(v));
-    let derivative = |axis: DVec3| on_plane((axis - ray * (normal.dot(axis) / depth)) / (depth * focal));
-    Some((on_plane(ray / depth), DMat2::from_cols(derivative(DVec3::X), derivative(DVec3::Y))))
 }
 
 /// Returns how much the shapes on a plane differ from each other: minus twice the logarithm of the likelihood that

@@ -1,10 +1,10 @@
 //! Estimates the camera from the lamps of a photo, if lines do not determine the camera.
 //!
-//! In fronto-parallel view, lamps of one kind have the same size and form (Chum and Matas, "Planar Affine
-//! Rectification from Change of Scale", ACCV 2010), and often lie on a lattice. The search therefore looks for the tilt of
-//! their plane for which the lamps agree best in size and form and, if most of them lie on a lattice seen in perspective,
-//! fit it best. It assumes that most lamps are as long as they are wide, that oblong lamps of one kind are equally long
-//! and parallel, and that lattices are symmetric. A lattice is certain enough to overrule lines: rays of glare and
+//! In fronto-parallel view, lamps of one kind have the same size and form (Chum and Matas, "Planar Affine Rectification
+//! from Change of Scale", ACCV 2010), and often lie on a lattice. The search therefore looks for the tilt of their
+//! plane for which the lamps agree best in size and form and, if most of them lie on a lattice seen in perspective, fit
+//! it best. It assumes that most lamps are as long as they are wide, that oblong lamps of one kind are equally long and
+//! parallel, and that lattices are symmetric. A lattice is certain enough to overrule lines: rays of glare and
 //! furniture make lines too.
 //! ```text
 //! mask of lamps ─┬▶ likeness ┐
@@ -16,6 +16,7 @@ mod evidence;
 mod lattice;
 mod likeness;
 mod retilt;
+mod search;
 #[cfg(test)]
 mod tests;
 mod tilt;
@@ -29,7 +30,8 @@ use crate::job::Job;
 use evidence::Evidence;
 use lattice::Symmetry;
 pub use likeness::BLOOM_UNIT;
-use tilt::{Tilt, TiltEstimate};
+use search::TiltEstimate;
+use tilt::Tilt;
 
 /// Minimum number of shapes for an estimate: two shapes of one kind give six measurements, for each shape the size and
 /// the two components of the stretch. The five unknowns are the normal (two), the focal length, the common size and
@@ -47,9 +49,9 @@ const MAX_COST: f64 = 1.5;
 
 impl View {
     /// Corrects the view such that the lamps marked by `lamps`, on the plane marked by `plane`, have equal size and
-    /// form and lie on a lattice, if they can, in fronto-parallel view. `None` if the lines determine the plane's normal
-    /// well and the lamps lie on no lattice, if the caller gave the focal length, if there are too few lamps, if the
-    /// lamps already agree with the view, or if they contradict each other.
+    /// form and lie on a lattice, if they can, in fronto-parallel view. `None` if the lines determine the plane's
+    /// normal well and the lamps lie on no lattice, if the caller gave the focal length, if there are too few lamps, if
+    /// the lamps already agree with the view, or if they contradict each other.
     pub fn corrected_by_lamps(&self, plane: &Image, lamps: &Image, job: Job) -> Result<Option<View>> {
         let Some((by_lines, error)) = self.tilt_by_lines(plane) else { return Ok(None) };
         let lamps = Evidence::of_mask(lamps, &self.perspective)?;
@@ -57,7 +59,7 @@ impl View {
         if lamps.shapes.len() < MIN_SHAPES || is_certain && lamps.lattice.is_none() {
             return Ok(None);
         }
-        let found = tilt::find(&lamps, (by_lines, error), self.expected_focal, job)?;
+        let found = search::find(&lamps, (by_lines, error), self.expected_focal, job)?;
         let better = found.filter(|found: &TiltEstimate| is_better(&lamps, &found.tilt, (&by_lines, is_certain)));
         Ok(better.map(|found| self.retilted(&found, &lamps, [plane.width, plane.height])))
     }
@@ -78,9 +80,9 @@ impl View {
     }
 }
 
-/// Whether the lamps agree if their plane has the tilt `tilt`, and agree clearly less if it has the tilt `than` that the
-/// lines imply. If the lamps lie on a lattice, only the lattice counts. To overrule lines that are certain, it must have a
-/// right angle: with a free focal length, most lattices can have one of the rarer symmetries.
+/// Whether the lamps agree if their plane has the tilt `tilt`, and agree clearly less if it has the tilt `than` that
+/// the lines imply. If the lamps lie on a lattice, only the lattice counts. To overrule lines that are certain, it must
+/// have a right angle: with a free focal length, most lattices can have one of the rarer symmetries.
 fn is_better(lamps: &Evidence, tilt: &Tilt, (than, is_certain): (&Tilt, bool)) -> bool {
     let Some(lattice) = &lamps.lattice else {
         let [cost, before] = [tilt, than].map(|tilt| lamps.cost(tilt));

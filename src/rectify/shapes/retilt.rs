@@ -2,7 +2,8 @@
 
 use super::evidence::Evidence;
 use super::lattice::Lattice;
-use super::tilt::{Tilt, TiltEstimate};
+use super::search::TiltEstimate;
+use super::tilt::Tilt;
 use crate::geometry::{FocalSource, Perspective, Segment};
 use crate::maths;
 use crate::rectify::sphere::{Frame, WeightedLine, project, refine, rms_angle, round_covariance};

@@ -77,14 +77,15 @@ const EQUAL_ASPECT: RangeInclusive<f64> = 0.7..=1.4;
 /// Maximum distance between the centres of two lamps of a row, measured across the row, as a share of the larger of
 /// their extents across the row. [bench photos:tune]
 const IN_ROW: f64 = 0.25;
-/// The distances between the lamps of a regular row may differ from whole steps by this share of a step. [bench photos:tune]
+/// The distances between the lamps of a regular row may differ from whole steps by this share of a step. [bench
+/// photos:tune]
 const REGULAR: f64 = 0.15;
 /// Maximum aspect (length over width) of a round lamp. Round lamps are often scattered, other lamps lie in rows.
 /// [bench photos:tune]
 const ROUND: f64 = 1.25;
-/// Maximum CIELAB difference between the median colours of two rings of pixels: around a region off the plane and off the
-/// face of the room, and around a lamp under a stroke. If the rings differ less, the room may have been laid out too
-/// small. [bench photos:tune]
+/// Maximum CIELAB difference between the median colours of two rings of pixels: around a region off the plane and off
+/// the face of the room, and around a lamp under a stroke. If the rings differ less, the room may have been laid out
+/// too small. [bench photos:tune]
 const EQUAL_RING: f64 = 8.0;
 /// If the lamps are proposed, lamps of one kind have areas that differ by at most the factor `KIND_AREA`, and aspects
 /// that differ by at most `KIND_ASPECT`, both measured on the face of the room. Bloom changes distant lamps more than
