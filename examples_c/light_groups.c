@@ -18,7 +18,7 @@ static void add_spot(luxfer_scene *scene) {
     spot.kind = LUXFER_LIGHT_SPOT;
     spot.position[0] = -0.6f, spot.position[1] = 0.5f, spot.position[2] = 0.4f;
     spot.direction[0] = 0.6f, spot.direction[1] = -0.45f, spot.direction[2] = -0.4f;
-    spot.intensity[0] = 900, spot.intensity[1] = 520, spot.intensity[2] = 200; /* candela */
+    spot.intensity[0] = 450, spot.intensity[1] = 260, spot.intensity[2] = 100; /* candela */
     spot.inner_angle = 0.15f, spot.outer_angle = 0.3f;
     check(luxfer_scene_add_light(scene, &spot, NULL), "spot");
 }
@@ -31,7 +31,7 @@ int main(void) {
     static const char *const expressions[GROUPS] = {"C.*<L.'Lamp'>", "C.*<L.'light0'>", "C.*<L.'environment'>"};
     /* --8<-- [end:expressions] */
     /* Factor of each group in a mixture, per channel. */
-    static const float mixtures[MIXTURES][GROUPS][3] = {{{0.05f, 0.05f, 0.05f}, {0.8f, 0.8f, 0.8f}, {0.3f, 0.3f, 0.3f}},
+    static const float mixtures[MIXTURES][GROUPS][3] = {{{0.05f, 0.05f, 0.05f}, {1.6f, 1.6f, 1.6f}, {0.3f, 0.3f, 0.3f}},
                                                         {{0.5f, 0.7f, 1.2f}, {0, 0, 0}, {0.4f, 0.7f, 1.6f}}};
     luxfer_scene *scene = NULL;
     luxfer_render *render = NULL;
@@ -44,7 +44,7 @@ int main(void) {
     double worst = 0;
     size_t k, count;
     int g, m;
-    sheet s = panels_begin(3, 2, 240, 180);
+    sheet s = panels_begin(3, 2, 180, 135);
 
     check(luxfer_context_create(NULL, &context), "context");
     check(luxfer_demo_create_scene(context, LUXFER_DEMO_STILL_LIFE, &scene), "scene");
@@ -53,9 +53,10 @@ int main(void) {
     check(luxfer_render_set_scene(render, scene), "render");
     for (g = 0; g < GROUPS; g++) check(luxfer_render_add_expression(render, names[g], expressions[g]), names[g]);
     check(luxfer_render_params_init(&params, sizeof params), "render");
-    params.width = 240;
-    params.height = 180;
-    params.samples = 96; /* layers of light are not filtered */
+    params.width = 180;
+    params.height = 135;
+    params.samples = 4096;
+    params.target_error = 0.02f; /* layers of light are not filtered, so trace paths until the noise is low */
     check(luxfer_render_start(render, &params, &job), "render");
     wait_and_release(job, "rendering");
     check(luxfer_render_get_report(render, &report, sizeof report), "report");

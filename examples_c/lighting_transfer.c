@@ -143,6 +143,7 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     luxfer_render_params params;
     luxfer_job *job = NULL;
     luxfer_image *image = NULL;
+    luxfer_render_report report;
     check(luxfer_render_params_init(&params, sizeof params), title);
     params.width = o->width / 2;
     params.height = o->height / 2;
@@ -154,6 +155,8 @@ static luxfer_image *preview(const options *o, luxfer_scene *scene, const luxfer
     check(luxfer_render_start(render, &params, &job), title);
     wait_and_release(job, title);
     check(luxfer_render_get_image(render, LUXFER_RENDER_PREVIEW, &image), title);
+    check(luxfer_render_get_report(render, &report, sizeof report), title);
+    printf("%s: filtered, with an error of %.1f %%\n", title, 100 * report.preview_error);
     luxfer_release(render);
     return image;
 }
