@@ -152,7 +152,7 @@ export class Page {
     this.lamps.onAdded = (added) => store.change(`added ${added.length}`, { added });
     this.lamps.onMix = (mix) => store.change("mix", { mix });
     this.lamps.onShift = (du, dv) =>
-      store.change("shift", { pattern: shiftBy(du, dv).pattern(store.project.pattern, 0)! });
+      store.change(`shift ${performance.now()}`, { pattern: shiftBy(du, dv).pattern(store.project.pattern, 0)! });
     this.lamps.onShow = (spots) => room.highlight(spots);
     this.pattern.onChange = (what, patch) => store.change(what, patch);
     this.roomTools.pattern = () => store.project.pattern;
