@@ -34,5 +34,6 @@ def run(program: Path, library: Path, *arguments: Path) -> subprocess.CompletedP
         environment = {**os.environ, "LUXFER_LIBRARY": str(library), "LIBGL_ALWAYS_SOFTWARE": "1", "TMPDIR": scratch}
         screen = f"-nocursor -screen 0 {'x'.join(SIZE)}x24 -fbdir {scratch}"
         window = ["--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", *SIZE]
-        command = ["xvfb-run", "-a", "-s", screen, BLENDER, *window, "--python", program, "--", f"{scratch}/Xvfb_screen0", *arguments]
+        script = ["--python-exit-code", "1", "--python", program]  # otherwise the window stays open after an error
+        command = ["xvfb-run", "-a", "-s", screen, BLENDER, *window, *script, "--", f"{scratch}/Xvfb_screen0", *arguments]
         return subprocess.run(command, env=environment, stdin=subprocess.DEVNULL, capture_output=True, text=True)
