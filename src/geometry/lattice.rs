@@ -16,7 +16,7 @@ const MIN_SHARE: f64 = 0.7;
 /// that has enough sites. [convention]
 const MAX_SITES_PER_SPOT: f64 = 4.0;
 /// Only this number of spots is used: more take time and add no certainty. [bench photos:tune]
-const MAX_SPOTS: usize = 64;
+pub const MAX_SPOTS: usize = 64;
 /// A spot lies on a site if its distance from the site is below this, in lattice steps. [bench photos:tune]
 const MAX_OFF_SITE: f64 = 0.2;
 /// Number of nearest spots that are tried as neighbours of a spot on the lattice. [bench photos:tune]
@@ -96,8 +96,8 @@ pub struct SeenLattice {
 }
 
 impl SeenLattice {
-    /// Finds the lattice on which most of the spots lie; `None` if there is none. Only the first [`MAX_SPOTS`] spots
-    /// count; put the most certain ones first.
+    /// Finds the lattice that holds most of the spots; `None` if no lattice does. Only the first [`MAX_SPOTS`] spots
+    /// count, so the caller puts the most certain ones first.
     pub fn find(spots: &[Spot]) -> Option<Self> {
         let spots = &spots[..spots.len().min(MAX_SPOTS)];
         if spots.len() < MIN_SITES {
@@ -142,8 +142,8 @@ impl SeenLattice {
     /// Returns the coordinates of a point of the image in lattice steps; `None` if the horizon of the plane separates
     /// it from the first cell.
     fn place(&self, point: DVec2) -> Option<DVec2> {
-        let first = self.to_image.apply(DVec2::ZERO);
-        let [here, first] = [point, first].map(|at| self.to_image.inverse().apply_homogeneous(at));
+        let to_steps = self.to_image.inverse();
+        let [here, first] = [point, self.to_image.apply(DVec2::ZERO)].map(|at| to_steps.apply_homogeneous(at));
         (here.z * first.z > 0.0).then(|| here.truncate() / here.z).filter(|place| place.is_finite())
     }
 

@@ -77,7 +77,7 @@ class Surfaces(StudioCase):
         self.assertEqual(self.seen["lamps"]["others"][0]["surface"], "Ceiling")
         self.assertEqual(self.out("glb"), before)
 
-        # Dimming the lamps of the wall leaves those of the ceiling as they are.
+        # A dimmer of the wall changes no lamp of the ceiling.
         dim = {**WALL, "mix": {str(kind): 0.0 for kind in range(20)}}
         self.edit(self.last, until="lux", **dim, others=[ceiling])
         rows = list(csv.DictReader(io.StringIO(self.out("csv").decode())))

@@ -4,10 +4,10 @@ use super::lattice::Lattice;
 use super::likeness::{self, Shape};
 use super::tilt::Tilt;
 use crate::error::Result;
-use crate::geometry::lattice::Spot;
+use crate::geometry::lattice::{MAX_SPOTS, Spot};
 use crate::geometry::{Perspective, Radial};
 use crate::image::Image;
-use crate::image::regions::Regions;
+use crate::image::regions::{Moments, Regions};
 use crate::maths;
 use glam::DVec2;
 
@@ -34,17 +34,15 @@ impl Evidence {
         let mut whole = Regions::of(mask)?.moments([mask.width, mask.height])?;
         whole.retain(|region| !region.is_cut && region.area >= MIN_PIXELS);
         whole.sort_by(|a, b| b.area.total_cmp(&a.area));
+        whole.truncate(MAX_SPOTS);
         let lens = Radial { centre: DVec2::ZERO, bend: camera.bend };
         let bloom_unit = likeness::BLOOM_UNIT * mask.width.max(mask.height) as f64;
-        let (mut shapes, mut lamps) = (Vec::new(), Vec::with_capacity(whole.len()));
-        for region in &whole {
-            let centre = region.centre - camera.principal;
-            lamps.push(Spot { centre: lens.ideal(centre), inverse: region.covariance.inverse() });
-            if shapes.len() < likeness::MAX_SHAPES {
-                shapes.push(Shape::new(centre, region.covariance, &lens, bloom_unit));
-            }
-        }
-        let lamps = Self { shapes, lattice: Lattice::find(&lamps), shape_weight: 1.0 };
+        let centre = |region: &Moments| region.centre - camera.principal;
+        let shape = |region: &Moments| Shape::new(centre(region), region.covariance, &lens, bloom_unit);
+        let spot = |region: &Moments| Spot { centre: lens.ideal(centre(region)), inverse: region.covariance.inverse() };
+        let shapes = whole.iter().take(likeness::MAX_SHAPES).map(shape).collect();
+        let spots: Vec<Spot> = whole.iter().map(spot).collect();
+        let lamps = Self { shapes, lattice: Lattice::find(&spots), shape_weight: 1.0 };
         Ok(Self { shape_weight: lamps.weight_of_shapes(camera.focal), ..lamps })
     }
 
@@ -52,7 +50,7 @@ impl Evidence {
     /// that suits them best. Bloom and blur can make shapes deviate by more than their errors; they must not outweigh
     /// the lattice then.
     fn weight_of_shapes(&self, focal: f64) -> f64 {
-        let costs = self.lattice_tilts(focal, LATTICE_FOCALS).map(|tilt| likeness::cost(&self.shapes, &tilt));
+        let costs = self.tilts(focal, false).map(|tilt| likeness::cost(&self.shapes, &tilt));
         let least = costs.fold(f64::INFINITY, f64::min);
         if least.is_finite() { (self.shapes.len() as f64 / least).min(1.0) } else { 1.0 }
     }
@@ -60,11 +58,8 @@ impl Evidence {
     /// The tilts that the lattice implies: for the expected focal length alone if it `is_known`, else for a wide range.
     /// Empty without a lattice.
     pub fn tilts(&self, expected: f64, is_known: bool) -> impl Iterator<Item = Tilt> {
-        self.lattice_tilts(expected, if is_known { 0 } else { LATTICE_FOCALS })
-    }
-
-    fn lattice_tilts(&self, focal: f64, range: i32) -> impl Iterator<Item = Tilt> {
-        let focals = (-range..=range).map(move |k| focal * maths::exp(LATTICE_FOCAL_STEP * f64::from(k)));
+        let range = if is_known { 0 } else { LATTICE_FOCALS };
+        let focals = (-range..=range).map(move |k| expected * maths::exp(LATTICE_FOCAL_STEP * f64::from(k)));
         focals.filter_map(|focal| Some(self.lattice.as_ref()?.tilt(focal)))
     }
 

@@ -43,7 +43,7 @@ pub struct Lattice {
 }
 
 impl Lattice {
-    /// Finds the lattice on which most of the lamps lie; `None` if there is none. The centres of `lamps` are relative
+    /// Finds the lattice that holds most of the lamps; `None` if no lattice does. The centres of `lamps` are relative
     /// to the principal point, in pixels of the photo that an ideal lens would take; the largest lamps must come first.
     pub fn find(lamps: &[Spot]) -> Option<Self> {
         let seen = SeenLattice::find(lamps)?;

@@ -149,7 +149,6 @@ class Shot:
     def send_view(self, project: Project) -> None:
         """Sends the vanishing points and, once the plane has been unwarped, its rectangle."""
         view = self.transfer.view
-        photo_width, photo_height = self.photo.size[:2]
         width, height, _ = self.transfer.image("unwarped").size if view.is_unwarped else (0, 0, 0)
         self.send(
             "view",
@@ -161,7 +160,7 @@ class Shot:
             unwarped=[width, height] if view.is_unwarped else None,
             to_photo=view.to_photo if view.is_unwarped else None,
             pixel_size=view.pixel_size,
-            lens=[*view.principal, 4 * view.undone / (photo_width**2 + photo_height**2)],
+            lens=[*view.principal, reshape.bend(view, self.photo.size[:2])],
         )
 
     def warnings(self) -> list[luxfer.StageWarning]:
