@@ -91,6 +91,10 @@ void define_parameters(OfxParamSetHandle set) {
                   "Degree to which the light of the exemplar is adapted, in brightness and contrast, to the light of the "
                   "scene to paint.",
                   double(defaults.match_appearance), 1, 1);
+    define_parameter(set, kOfxParamTypeBoolean, parameter::mask_by_alpha, "Mask by Alpha",
+                     "Only pixels of the artwork whose alpha is above 0.5 are copied: without the margins of the paper, for "
+                     "example.")
+        .set(kOfxParamPropDefault, 0);
     const Properties seed = define_parameter(set, kOfxParamTypeInteger, parameter::seed, "Seed", "Seed of the search.");
     seed.set(kOfxParamPropDefault, int(defaults.seed));
     seed.set(kOfxParamPropMin, 0);

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <stdexcept>
+#include <vector>
 
 namespace openfx {
 
@@ -49,8 +51,9 @@ std::string in_words(const OfxRectI &area) {
 std::optional<Frame> Frame::fetch(OfxImageEffectHandle effect, const char *clip, double time) {
     OfxImageClipHandle handle = nullptr;
     OfxPropertySetHandle properties = nullptr, image = nullptr;
+    const bool is_output = std::string(clip) == kOfxImageEffectOutputClipName; // connected if another effect uses it
     if (suites().effect->clipGetHandle(effect, clip, &handle, &properties) != kOfxStatOK ||
-        Properties(properties).integer(kOfxImageClipPropConnected) == 0 ||
+        (!is_output && Properties(properties).integer(kOfxImageClipPropConnected) == 0) ||
         suites().effect->clipGetImage(handle, time, nullptr, &image) != kOfxStatOK || image == nullptr)
         return std::nullopt;
     return Frame(image, clip);

@@ -49,7 +49,8 @@ constexpr double max_weight = 1e6; // [convention]
 /// Names of the parameters; guides[].weight are names too.
 namespace parameter {
 constexpr char quality[] = "quality", final_vote[] = "finalVote", guide_weight[] = "guideWeight",
-               match_appearance[] = "matchAppearance", seed[] = "seed", encoding[] = "encoding";
+               match_appearance[] = "matchAppearance", mask_by_alpha[] = "maskByAlpha", seed[] = "seed",
+               encoding[] = "encoding";
 } // namespace parameter
 
 /// The encoding of colours in clips: the value of the parameter `encoding`.

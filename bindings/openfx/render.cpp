@@ -6,6 +6,7 @@
 #include "frame.hpp"
 #include "inputs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <stdexcept>
 
@@ -22,7 +23,7 @@ OfxParamHandle parameter_of(OfxImageEffectHandle effect, const char *name) {
     return handle;
 }
 
-/// The value of a parameter: an int of integers and choices, a double of numbers.
+/// The value of a parameter: an int of integers, choices and booleans, a double of numbers.
 template <class T>
 T value_of(OfxImageEffectHandle effect, const char *name, double time) {
     T value = T();
@@ -88,22 +89,11 @@ Canvas set_inputs(const luxfer::Stylize &stylize, OfxImageEffectHandle effect, d
     const Frame artwork = fetch(effect, artwork_clip, time, "connect the exemplar as painted by the artist");
     check_areas(artwork, exemplar);
     stylize.set_artwork(artwork.colour(stylize.context(), encoding));
+    if (value_of<int>(effect, parameter::mask_by_alpha, time) != 0)
+        stylize.set_source_mask(artwork.alpha(stylize.context()));
     for (const Guide &guide : guides)
         add_guide(stylize, effect, time, encoding, guide, source, exemplar);
     return {source.area(), source.alpha(stylize.context())};
-}
-
-/// Waits for the job, and cancels it if the host or the user asks for it; false if it was cancelled.
-bool wait(const luxfer::Job &job, OfxImageEffectHandle effect) {
-    const ProgressBar bar(effect, "luxfer Stylise");
-    try {
-        job.wait([&](double fraction) { return suites().effect->abort(effect) == 0 && bar.show(fraction); });
-        return true;
-    } catch (const luxfer::Error &error) {
-        if (error.status() != LUXFER_CANCELLED)
-            throw;
-        return false;
-    }
 }
 
 /// The picture in the size of the target: that of the quality Preview is half as large.
@@ -127,6 +117,24 @@ void show_warnings(OfxImageEffectHandle effect, const luxfer::Warnings &warnings
         clear_message(effect);
     else
         show_message(effect, kOfxMessageWarning, text);
+}
+
+/// Paints a frame. Throws luxfer::Error with LUXFER_CANCELLED if the host or the user ends the work.
+void paint(OfxImageEffectHandle effect, const Properties &arguments) {
+    const double time = arguments.number(kOfxPropTime);
+    const auto encoding = Encoding(value_of<int>(effect, parameter::encoding, time));
+    const auto context = luxfer::Context::create();
+    const auto stylize = luxfer::Stylize::create(context);
+    const Canvas canvas = set_inputs(stylize, effect, time, encoding);
+    {
+        const ProgressBar bar(effect, "luxfer Stylise");
+        const auto job = stylize.start(settings_of(effect, time));
+        job.wait([&](double fraction) { return suites().effect->abort(effect) == 0 && bar.show(fraction); });
+    }
+    const Frame output = fetch(effect, kOfxImageEffectOutputClipName, time, "the host gives no pixels to write to");
+    output.write(enlarge(stylize.image(), canvas.area), canvas.alpha, encoding, canvas.area,
+                 arguments.rectangle(kOfxImageEffectPropRenderWindow));
+    show_warnings(effect, stylize.warnings());
 }
 
 /// Gets the region of definition of a clip; false if the clip is not connected.
@@ -168,19 +176,18 @@ OfxStatus get_regions_of_interest(OfxImageEffectHandle effect, const Properties 
 }
 
 OfxStatus render(OfxImageEffectHandle effect, const Properties &arguments) {
-    const double time = arguments.number(kOfxPropTime);
-    const auto encoding = Encoding(value_of<int>(effect, parameter::encoding, time));
-    const auto context = luxfer::Context::create();
-    const auto stylize = luxfer::Stylize::create(context);
-    const Canvas canvas = set_inputs(stylize, effect, time, encoding);
-    if (!wait(stylize.start(settings_of(effect, time)), effect))
-        return suites().effect->abort(effect) != 0 ? kOfxStatOK : kOfxStatFailed;
-
-    const Frame output = fetch(effect, kOfxImageEffectOutputClipName, time, "the host gives no pixels to write to");
-    output.write(enlarge(stylize.image(), canvas.area), canvas.alpha, encoding, canvas.area,
-                 arguments.rectangle(kOfxImageEffectPropRenderWindow));
-    show_warnings(effect, stylize.warnings());
-    return kOfxStatOK;
+    try {
+        paint(effect, arguments);
+        return kOfxStatOK;
+    } catch (const std::exception &error) {
+        // A host that aborts may give no pictures either. It expects success, and drops the frame.
+        if (suites().effect->abort(effect) != 0)
+            return kOfxStatOK;
+        const auto *failure = dynamic_cast<const luxfer::Error *>(&error);
+        if (failure != nullptr && failure->status() == LUXFER_CANCELLED) // at the progress bar: not worth a message
+            return kOfxStatFailed;
+        throw;
+    }
 }
 
 } // namespace openfx

@@ -77,7 +77,7 @@ public:
     void getFrameRange(double &start, double &end) const override { start = 0, end = 10; }
     void getUnmappedFrameRange(double &start, double &end) const override { start = 0, end = 10; }
     bool getContinuousSamples() const override { return false; }
-    bool getConnected() const override { return picture_ != nullptr; }
+    bool getConnected() const override { return picture_ != nullptr && !isOutput(); } // no other effect uses the output
     OfxRectD getRegionOfDefinition(OfxTime) const override {
         const OfxRectI b = picture_->bounds();
         return {double(b.x1), double(b.y1), double(b.x2), double(b.y2)};
@@ -134,6 +134,8 @@ public:
         if (type == kOfxParamTypeGroup)
             return new param::GroupInstance(descriptor, this);
         const int integer = is_set ? int(found->second) : properties.getIntProperty(kOfxParamPropDefault);
+        if (type == kOfxParamTypeBoolean)
+            return new Value<param::BooleanInstance, bool>(descriptor, this, integer != 0);
         if (type == kOfxParamTypeChoice)
             return new Value<param::ChoiceInstance, int>(descriptor, this, integer);
         return new Value<param::IntegerInstance, int>(descriptor, this, integer);

@@ -163,6 +163,25 @@ void uses_parameters() {
     CHECK(scene.output.get(0, 3) == shot::read(shot::paint(encoded, params, 3), FLOAT, LUXFER_COLOUR_SRGB));
 }
 
+// The alpha of the artwork serves as a mask if asked; if it leaves nothing, the library's message is shown.
+void masks_the_artwork() {
+    const float clear = 0.25f, opaque = 1;
+    Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT), empty(frame_of(RGBA_FLOAT), RGBA_FLOAT);
+    scene.session.parameters["maskByAlpha"] = empty.session.parameters["maskByAlpha"] = 1;
+    Picture &artwork = scene.frame.pictures.at("Artwork"), &hidden = empty.frame.pictures.at("Artwork");
+    for (std::uint32_t y = 0; y < artwork.height; y++)
+        for (std::uint32_t x = 0; x < artwork.width; x++) {
+            std::memcpy(artwork.at(x, y) + 3 * sizeof(float), x < 20 ? &clear : &opaque, sizeof(float));
+            std::memcpy(hidden.at(x, y) + 3 * sizeof(float), &clear, sizeof(float));
+        }
+    CHECK(scene.render() == kOfxStatOK);
+    shot::Bytes alpha = artwork.get(3, 1);
+    const shot::Image mask = shot::make(alpha, artwork.width, artwork.height, 1, FLOAT, LUXFER_COLOUR_LINEAR);
+    const shot::Image masked = shot::paint(scene.frame, preset(LUXFER_STYLIZE_FAST), 1, mask);
+    CHECK(scene.output.get(0, 3) == shot::read(masked, FLOAT, LUXFER_COLOUR_LINEAR));
+    CHECK(empty.fails_with("mask"));
+}
+
 // An artwork of 8 bits with renderings of floats, and an output without alpha; then a source without alpha.
 void mixes_kinds_of_pixels() {
     const Layout rgb = {FLOAT, 3, false, {0, 0}, 0}, byte = {BYTE, 4, false, {0, 0}, 0};
@@ -271,6 +290,11 @@ void ends_when_asked() {
     CHECK(aborted.output.is_untouched() && aborted.session.message.empty());
     CHECK(aborted.session.progress_started == 1 && aborted.session.progress_ended == 1);
 
+    Scene without(frame_of(RGBA_FLOAT), RGBA_FLOAT); // a host that aborts may give no pictures either
+    without.frame.pictures.erase("Artwork");
+    without.session.aborts_after = 0;
+    CHECK(without.render() == kOfxStatOK && without.output.is_untouched() && without.session.message.empty());
+
     Scene cancelled(frame_of(RGBA_FLOAT), RGBA_FLOAT);
     cancelled.session.cancels_after = 0;
     CHECK(cancelled.render() == kOfxStatFailed);
@@ -308,6 +332,7 @@ void run(const std::string &header) {
     paints_like_the_library({SHORT, 4, false, {0, 0}, 0}, LUXFER_COLOUR_SRGB);
     paints_like_the_library({HALF, 4, true, {0, 0}, 6}, LUXFER_COLOUR_LINEAR);
     uses_parameters();
+    masks_the_artwork();
     mixes_kinds_of_pixels();
     keeps_to_the_window();
     enlarges_the_preview();

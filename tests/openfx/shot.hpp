@@ -148,13 +148,15 @@ struct Frame {
 };
 
 // What the library paints of a frame, called as a program in C would call it.
-inline Image paint(const Frame &frame, const luxfer_stylize_params &params, float direct_weight = 1) {
+inline Image paint(const Frame &frame, const luxfer_stylize_params &params, float direct_weight = 1,
+                   const Image &mask = nullptr) {
     luxfer_stylize *stylize = nullptr;
     luxfer_job *job = nullptr;
     luxfer_image *picture = nullptr;
     const auto image = [&](const char *clip) { return frame.same.at(clip).get(); };
     CHECK_OK(luxfer_stylize_create(context(), &stylize));
     CHECK_OK(luxfer_stylize_set_artwork(stylize, image("Artwork")));
+    CHECK_OK(luxfer_stylize_set_source_mask(stylize, mask.get()));
     CHECK_OK(luxfer_stylize_add_guide(stylize, "full", image("Exemplar"), image("Source"), 1, LUXFER_GUIDE_LIGHT));
     if (frame.same.count("Direct") != 0)
         CHECK_OK(luxfer_stylize_add_guide(stylize, "direct", image("ExemplarDirect"), image("Direct"), direct_weight,
