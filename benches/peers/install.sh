@@ -83,8 +83,8 @@ case " ${wanted:-texture_synthesis} " in
     ;;
 esac
 
-# The OpenFX headers, and the official library for hosts, which the test of the OpenFX plug-in uses. The crate openfx-sys
-# carries the tree of the official repository.
+# The OpenFX headers, and the official library for hosts, which the test of the OpenFX plug-in uses. The crate
+# openfx-sys carries the tree of the official repository.
 install_openfx() {
   case " ${wanted:-openfx} " in *" openfx "*) ;; *) return ;; esac
   [ -d target/peers/openfx ] && return

@@ -85,15 +85,15 @@ void define_parameters(OfxParamSetHandle set) {
                   "How a pixel of the picture is computed from overlapping patches of the artwork.",
                   {"As Quality Has It", "Plain", "Weighted", "Nearest", "Majority", "Adaptive"});
     define_number(set, parameter::guide_weight, "Guide Weight",
-                  "Weight of all guides together, relative to the weight of the artwork.", double(defaults.guide_weight),
-                  max_weight, 10);
+                  "Weight of all guides together, relative to the weight of the artwork.",
+                  double(defaults.guide_weight), max_weight, 10);
     define_number(set, parameter::match_appearance, "Match Light",
-                  "Degree to which the light of the exemplar is adapted, in brightness and contrast, to the light of the "
-                  "scene to paint.",
+                  "Degree to which the light of the exemplar is adapted, in brightness and contrast, to the light of "
+                  "the scene to paint.",
                   double(defaults.match_appearance), 1, 1);
     define_parameter(set, kOfxParamTypeBoolean, parameter::mask_by_alpha, "Mask by Alpha",
-                     "Only pixels of the artwork whose alpha is above 0.5 are copied: without the margins of the paper, for "
-                     "example.")
+                     "Only pixels of the artwork whose alpha is above 0.5 are copied: without the margins of the "
+                     "paper, for example.")
         .set(kOfxParamPropDefault, 0);
     const Properties seed = define_parameter(set, kOfxParamTypeInteger, parameter::seed, "Seed", "Seed of the search.");
     seed.set(kOfxParamPropDefault, int(defaults.seed));
@@ -103,7 +103,8 @@ void define_parameters(OfxParamSetHandle set) {
     seed.set(kOfxParamPropDisplayMax, 100);
     define_choice(set, parameter::encoding, "Encoding",
                   "How colours are encoded in the clips of light, in the artwork and in the output. By Depth: "
-                  "floating-point samples are linear, integers are sRGB. Normals, edges and materials are never encoded.",
+                  "floating-point samples are linear, integers are sRGB. Normals, edges and materials are never "
+                  "encoded.",
                   {"By Depth", "Linear", "sRGB"});
 
     constexpr char weights[] = "weights";

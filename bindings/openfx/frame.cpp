@@ -65,7 +65,8 @@ Frame::Frame(OfxPropertySetHandle image, const char *clip) : image_(image), clip
 
     const std::string name = properties.text(kOfxImageEffectPropPixelDepth);
     const std::string components = properties.text(kOfxImageEffectPropComponents);
-    const auto depth = std::find_if(std::begin(depths), std::end(depths), [&](const Depth &d) { return name == d.name; });
+    const auto is_named = [&](const Depth &depth) { return name == depth.name; };
+    const auto depth = std::find_if(std::begin(depths), std::end(depths), is_named);
     const bool is_rgba = components == kOfxImageComponentRGBA;
     if (depth == std::end(depths) || (!is_rgba && components != kOfxImageComponentRGB))
         fail("has pixels of the kind " + components + ", " + name + ", which the effect does not support");
@@ -104,7 +105,7 @@ luxfer::ImageView Frame::view(std::byte *lowest, const OfxRectI &area, std::size
     view.pixel_stride = pixel_bytes_;
     view.row_stride = row_bytes;
     view.data = lowest + first_channel * sample_bytes_;
-    view.byte_size = (height_of(area) - 1) * row_bytes + (width_of(area) * pixel_bytes_ - first_channel * sample_bytes_);
+    view.byte_size = (height_of(area) - 1) * row_bytes + width_of(area) * pixel_bytes_ - first_channel * sample_bytes_;
     return view;
 }
 
@@ -146,11 +147,12 @@ void Frame::write(const luxfer::Image &colour, const luxfer::Image &alpha, Encod
     }
 
     const OfxRectI written = shared(window, bounds_), covered = shared(written, area);
-    for (int y = written.y1; y < written.y2 && written.x1 < written.x2; y++) {
+    for (int y = written.y1; y < written.y2 && written.x1 < written.x2; y++)
         std::memset(at(written.x1, y), 0, width_of(written) * pixel_bytes_);
-        if (y >= covered.y1 && y < covered.y2 && covered.x1 < covered.x2)
-            std::memcpy(at(covered.x1, y), &packed[std::size_t(y - area.y1) * row + std::size_t(covered.x1 - area.x1) * pixel_bytes_],
-                        width_of(covered) * pixel_bytes_);
+    for (int y = covered.y1; y < covered.y2 && covered.x1 < covered.x2; y++) {
+        const std::size_t x = std::size_t(covered.x1 - area.x1);
+        std::memcpy(at(covered.x1, y), &packed[std::size_t(y - area.y1) * row + x * pixel_bytes_],
+                    width_of(covered) * pixel_bytes_);
     }
 }
 

@@ -7,8 +7,8 @@
 
 namespace openfx {
 
-/// The rendering of the target, under the name that OpenFX demands for the main input; the rendering of the exemplar; and
-/// the exemplar as painted by the artist.
+/// The rendering of the target, under the name that OpenFX demands for the main input; the rendering of the exemplar;
+/// and the exemplar as painted by the artist.
 constexpr char source_clip[] = "Source", exemplar_clip[] = "Exemplar", artwork_clip[] = "Artwork";
 
 /// A pair of clips that shows one kind of light, or one property of surfaces, of the target and of the exemplar.

@@ -102,8 +102,8 @@ luxfer::Image enlarge(const luxfer::Image &picture, const OfxRectI &area) {
     const auto width = std::uint32_t(area.x2 - area.x1), height = std::uint32_t(area.y2 - area.y1);
     if (size.width == width && size.height == height)
         return picture;
-    const std::array<double, 9> to_picture = {double(size.width) / width, 0, 0, 0, double(size.height) / height, 0, 0, 0, 1};
-    return picture.warp(to_picture, width, height);
+    const double x = double(size.width) / width, y = double(size.height) / height;
+    return picture.warp(std::array<double, 9>{x, 0, 0, 0, y, 0, 0, 0, 1}, width, height);
 }
 
 /// Shows the library's warnings at the effect, or removes the message of an earlier frame.
@@ -153,7 +153,8 @@ OfxStatus get_clip_preferences(const Properties &results) {
     return kOfxStatOK;
 }
 
-OfxStatus get_region_of_definition(OfxImageEffectHandle effect, const Properties &arguments, const Properties &results) {
+OfxStatus get_region_of_definition(OfxImageEffectHandle effect, const Properties &arguments,
+                                   const Properties &results) {
     OfxRectD region = {};
     if (!get_region(effect, source_clip, arguments.number(kOfxPropTime), region))
         return kOfxStatReplyDefault;

@@ -43,7 +43,7 @@ class Image : public effect::Image {
 public:
     Image(effect::ClipInstance &clip, Picture &picture, const Session &session)
         : effect::Image(clip, 1, 1, session.has_bad_data ? nullptr : lower_left(picture), picture.bounds(),
-                        picture.bounds(), session.has_bad_rows ? 1 : sign(picture) * picture.row_bytes,
+                        picture.defined(), session.has_bad_rows ? 1 : sign(picture) * picture.row_bytes,
                         kOfxImageFieldNone, "") {
         setStringProperty(kOfxImageEffectPropPixelDepth, picture.layout.depth.name);
         setStringProperty(kOfxImageEffectPropComponents,
@@ -79,7 +79,7 @@ public:
     bool getContinuousSamples() const override { return false; }
     bool getConnected() const override { return picture_ != nullptr && !isOutput(); } // no other effect uses the output
     OfxRectD getRegionOfDefinition(OfxTime) const override {
-        const OfxRectI b = picture_->bounds();
+        const OfxRectI b = picture_ ? picture_->defined() : OfxRectI{0, 0, 0, 0};
         return {double(b.x1), double(b.y1), double(b.x2), double(b.y2)};
     }
     effect::Image *getImage(OfxTime, const OfxRectD *) override {
@@ -116,7 +116,8 @@ public:
 
 class Instance : public effect::Instance {
 public:
-    Instance(effect::ImageEffectPlugin *plugin, effect::Descriptor &descriptor, const std::string &context, Session &session)
+    Instance(effect::ImageEffectPlugin *plugin, effect::Descriptor &descriptor, const std::string &context,
+             Session &session)
         : effect::Instance(plugin, descriptor, context, false), session_(session) {}
 
     effect::ClipInstance *newClipInstance(effect::Instance *, effect::ClipDescriptor *descriptor, int) override {
@@ -129,10 +130,12 @@ public:
         const auto &properties = descriptor.getProperties();
         const auto found = session_.parameters.find(name);
         const bool is_set = found != session_.parameters.end();
-        if (type == kOfxParamTypeDouble)
-            return new Number(descriptor, this, is_set ? found->second : properties.getDoubleProperty(kOfxParamPropDefault));
         if (type == kOfxParamTypeGroup)
             return new param::GroupInstance(descriptor, this);
+        if (type == kOfxParamTypeDouble) {
+            const double initial = properties.getDoubleProperty(kOfxParamPropDefault);
+            return new Number(descriptor, this, is_set ? found->second : initial);
+        }
         const int integer = is_set ? int(found->second) : properties.getIntProperty(kOfxParamPropDefault);
         if (type == kOfxParamTypeBoolean)
             return new Value<param::BooleanInstance, bool>(descriptor, this, integer != 0);
@@ -156,7 +159,11 @@ public:
     OfxStatus setPersistentMessage(const char *type, const char *id, const char *format, va_list arguments) override {
         return vmessage(type, id, format, arguments);
     }
-    OfxStatus clearPersistentMessage() override { return session_.message.clear(), session_.message_type.clear(), kOfxStatOK; }
+    OfxStatus clearPersistentMessage() override {
+        session_.message.clear();
+        session_.message_type.clear();
+        return kOfxStatOK;
+    }
 
     const std::string &getDefaultOutputFielding() const override { return no_field_; }
     void getProjectSize(double &x, double &y) const override { x = 1920, y = 1080; }
@@ -195,7 +202,9 @@ public:
                                   const std::string &context) override {
         return new Instance(plugin, descriptor, context, *static_cast<Session *>(session));
     }
-    effect::Descriptor *makeDescriptor(effect::ImageEffectPlugin *plugin) override { return new effect::Descriptor(plugin); }
+    effect::Descriptor *makeDescriptor(effect::ImageEffectPlugin *plugin) override {
+        return new effect::Descriptor(plugin);
+    }
     effect::Descriptor *makeDescriptor(const effect::Descriptor &root, effect::ImageEffectPlugin *plugin) override {
         return new effect::Descriptor(root, plugin);
     }

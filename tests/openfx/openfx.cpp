@@ -3,13 +3,13 @@
 //
 //   openfx FOLDER HEADER [PICTURE.png]   FOLDER contains luxfer.ofx.bundle; HEADER is luxfer/stylize.h, whose ranges
 //                                        and defaults the parameters must have; the first picture is saved, if asked
+#include "description.hpp"
 #include "host.hpp"
 #include "shot.hpp"
 
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <regex>
 #include <thread>
 
 namespace {
@@ -35,7 +35,8 @@ shot::Frame frame_of(const Layout &layout, luxfer_colour_space space = LUXFER_CO
 
 // A frame in the host: its clips, the output, and what has happened.
 struct Scene {
-    explicit Scene(shot::Frame inputs, const Layout &layout) : frame(std::move(inputs)), output(layout, shot::width, shot::height) {
+    Scene(shot::Frame inputs, const Layout &layout)
+        : frame(std::move(inputs)), output(layout, shot::width, shot::height) {
         session.parameters["quality"] = LUXFER_STYLIZE_FAST;
     }
 
@@ -60,10 +61,10 @@ struct Scene {
     // Whether a render fails with a message that contains `words`, and leaves the output alone.
     bool fails_with(const std::string &words) {
         const OfxStatus status = render();
-        const bool is_told = session.message_type == kOfxMessageError && session.message.find(words) != std::string::npos;
+        const bool is_told = session.message.find(words) != std::string::npos;
         if (!is_told)
             std::fprintf(stderr, "the message is: %s\n", session.message.c_str());
-        return status == kOfxStatFailed && is_told && output.is_untouched();
+        return status == kOfxStatFailed && is_told && session.message_type == kOfxMessageError && output.is_untouched();
     }
 
     shot::Frame frame;
@@ -72,63 +73,9 @@ struct Scene {
     OfxRectD region = {};
 };
 
-std::vector<std::string> names_of(const host::effect::Descriptor &descriptor, bool is_optional) {
-    std::vector<std::string> names;
-    for (const auto *clip : descriptor.getClipsByOrder())
-        if (clip->isOptional() == is_optional)
-            names.push_back(clip->getName());
-    return names;
-}
-
-// The minimum, maximum and default that the header states in the comment above a field.
-void check_range(const OFX::Host::Property::Set &of, const std::string &header, const std::string &field) {
-    const std::size_t end = header.find(" " + field + ";"), begin = header.rfind("/**", end);
-    std::string comment = header.substr(begin, end - begin);
-    comment = std::regex_replace(comment, std::regex("\\s*\n\\s*\\*\\s*"), " ");
-    std::smatch range, value;
-    CHECK(std::regex_search(comment, range, std::regex("in \\[([^,]+), ([^\\]]+)\\]")));
-    CHECK(std::regex_search(comment, value, std::regex("default ([0-9.]+[0-9])|default ([0-9])|([0-9.]+), the default")));
-    const std::string found = value[1].str() + value[2].str() + value[3].str();
-    CHECK(of.getDoubleProperty(kOfxParamPropMin) == std::stod(range[1]));
-    CHECK(of.getDoubleProperty(kOfxParamPropMax) == std::stod(range[2]));
-    CHECK(of.getDoubleProperty(kOfxParamPropDefault) == std::stod(found));
-}
-
-// The options from `first` on have the names of the header's constants, in their order.
-void check_options(const OFX::Host::Property::Set &of, int first, const std::string &header, const std::string &prefix) {
-    const std::regex constant("#define " + prefix + "([A-Z]+) ([0-9]+)\n");
-    int count = 0;
-    for (std::sregex_iterator it(header.begin(), header.end(), constant), end; it != end; ++it, count++) {
-        std::string option = of.getStringProperty(kOfxParamPropChoiceOption, first + std::stoi((*it)[2]));
-        for (char &c : option)
-            c = char(std::toupper(c));
-        CHECK(option == (*it)[1]);
-    }
-    CHECK(count > 0 && of.getDimension(kOfxParamPropChoiceOption) == first + count);
-}
-
-void describes_itself(const std::string &header) {
-    host::effect::Descriptor &general = *plugin->getContext(kOfxImageEffectContextGeneral);
-    host::effect::Descriptor &filter = *plugin->getContext(kOfxImageEffectContextFilter);
-    CHECK((names_of(general, false) == std::vector<std::string>{"Source", "Exemplar", "Artwork", "Output"}));
-    CHECK((names_of(filter, false) == std::vector<std::string>{"Source", "Output"}));
-    CHECK(names_of(general, true).size() == 16 && names_of(filter, true).size() == 18);
-    CHECK(!general.supportsTiles() && general.supportsMultiResolution() && !general.getHostFrameThreading());
-
-    const auto properties = [&](const char *name) -> const OFX::Host::Property::Set & {
-        return general.getParams().at(name)->getProperties();
-    };
-    check_range(properties("guideWeight"), header, "guide_weight");
-    check_range(properties("matchAppearance"), header, "match_appearance");
-    check_options(properties("quality"), 0, header, "LUXFER_STYLIZE_");
-    check_options(properties("finalVote"), 1, header, "LUXFER_STYLIZE_VOTE_");
-    CHECK(properties("seed").getIntProperty(kOfxParamPropDefault) == 1);
-    CHECK(header.find("weight, in [0, 1e6], is relative to the other guides") != std::string::npos);
-    CHECK(properties("weightNormals").getDoubleProperty(kOfxParamPropMax) == 1e6);
-}
-
 // A picture of the plug-in is the library's, to the bit, with the alpha of the source.
-void paints_like_the_library(const Layout &layout, luxfer_colour_space space, const char *context = kOfxImageEffectContextGeneral) {
+void paints_like_the_library(const Layout &layout, luxfer_colour_space space,
+                             const char *context = kOfxImageEffectContextGeneral) {
     Scene scene(frame_of(layout, space), layout);
     CHECK(scene.render(context) == kOfxStatOK);
     const shot::Image picture = shot::paint(scene.frame, preset(LUXFER_STYLIZE_FAST));
@@ -144,8 +91,13 @@ void paints_like_the_library(const Layout &layout, luxfer_colour_space space, co
 
 void uses_parameters() {
     Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT);
-    scene.session.parameters = {{"quality", LUXFER_STYLIZE_FAST}, {"finalVote", 1 + LUXFER_STYLIZE_VOTE_NEAREST}, {"guideWeight", 5},
-                                {"matchAppearance", 0.5}, {"seed", 7}, {"weightDirect", 3}, {"encoding", 2}};
+    scene.session.parameters = {{"quality", LUXFER_STYLIZE_FAST},
+                                {"finalVote", 1 + LUXFER_STYLIZE_VOTE_NEAREST},
+                                {"guideWeight", 5},
+                                {"matchAppearance", 0.5},
+                                {"seed", 7},
+                                {"weightDirect", 3},
+                                {"encoding", 2}};
     CHECK(scene.render() == kOfxStatOK);
     shot::Frame encoded = frame_of(RGBA_FLOAT, LUXFER_COLOUR_LINEAR);
     for (auto &image : encoded.same) { // the same numbers, read as sRGB
@@ -188,8 +140,8 @@ void mixes_kinds_of_pixels() {
     Scene scene(frame_of(RGBA_FLOAT), rgb);
     scene.frame.add("Artwork", byte, LUXFER_COLOUR_SRGB);
     CHECK(scene.render() == kOfxStatOK);
-    const shot::Bytes expected = shot::read(shot::paint(scene.frame, preset(LUXFER_STYLIZE_FAST)), FLOAT, LUXFER_COLOUR_LINEAR);
-    CHECK(scene.output.get(0, 3) == expected);
+    const shot::Image picture = shot::paint(scene.frame, preset(LUXFER_STYLIZE_FAST));
+    CHECK(scene.output.get(0, 3) == shot::read(picture, FLOAT, LUXFER_COLOUR_LINEAR));
 
     Scene opaque(frame_of(rgb), RGBA_FLOAT);
     CHECK(opaque.render() == kOfxStatOK);
@@ -223,6 +175,24 @@ void keeps_to_the_window() {
     CHECK(std::memcmp(beside.output.at(46, 0), shot::Bytes(pixel).data(), pixel) == 0);
 }
 
+// A host may give more pixels than a clip defines: those beyond the region of definition are no part of the picture.
+void ignores_pixels_beyond_the_region() {
+    Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT), larger(frame_of(RGBA_FLOAT), RGBA_FLOAT);
+    const int border = 3;
+    for (auto &entry : larger.frame.pictures) {
+        Picture &picture = entry.second;
+        const std::uint32_t inner_width = picture.width, inner_height = picture.height;
+        Picture around({FLOAT, 4, false, {-border, -border}, 0}, inner_width + 2 * border, inner_height + 2 * border);
+        around.border = border;
+        for (std::uint32_t y = 0; y < inner_height; y++)
+            std::memcpy(around.at(border, y + border), picture.at(0, y), inner_width * 16);
+        picture = around;
+    }
+    CHECK(scene.render() == kOfxStatOK && larger.render() == kOfxStatOK);
+    CHECK(larger.region.x1 == 0 && larger.region.x2 == shot::width);
+    CHECK(larger.output.memory == scene.output.memory);
+}
+
 void enlarges_the_preview() {
     Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT);
     scene.session.parameters["quality"] = LUXFER_STYLIZE_PREVIEW;
@@ -243,6 +213,15 @@ void says_what_is_missing() {
     Scene half(frame_of(RGBA_FLOAT), RGBA_FLOAT);
     half.frame.pictures.erase("ExemplarDirect");
     CHECK(half.fails_with("Direct is connected, but ExemplarDirect is not"));
+}
+
+// An exemplar without light: the picture has a warning, which is shown without a failure.
+void passes_warnings_on() {
+    Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT);
+    for (const char *clip : {"Exemplar", "ExemplarDirect"})
+        std::memset(scene.frame.pictures.at(clip).memory.data(), 0, scene.frame.pictures.at(clip).memory.size());
+    CHECK(scene.render() == kOfxStatOK);
+    CHECK(scene.session.message_type == kOfxMessageWarning && scene.session.message.find("light") != std::string::npos);
 }
 
 void refuses_what_does_not_fit() {
@@ -277,7 +256,8 @@ void survives_bad_numbers() {
         scene.frame.same[clip] = shot::make(bytes, picture.width, picture.height, 3, FLOAT, LUXFER_COLOUR_LINEAR);
     }
     CHECK(scene.render() == kOfxStatOK);
-    CHECK(scene.output.get(0, 3) == shot::read(shot::paint(scene.frame, preset(LUXFER_STYLIZE_FAST)), FLOAT, LUXFER_COLOUR_LINEAR));
+    const shot::Image painted = shot::paint(scene.frame, preset(LUXFER_STYLIZE_FAST));
+    CHECK(scene.output.get(0, 3) == shot::read(painted, FLOAT, LUXFER_COLOUR_LINEAR));
     CHECK(scene.output.get(3, 1) == scene.frame.pictures.at("Source").get(3, 1));
 }
 
@@ -303,7 +283,7 @@ void ends_when_asked() {
 
 // A message stays until a frame succeeds. Two instances that render at the same time paint what one paints alone.
 void keeps_instances_apart() {
-    Scene alone(frame_of(RGBA_FLOAT), RGBA_FLOAT), first(frame_of(RGBA_FLOAT), RGBA_FLOAT), second(frame_of(RGBA_FLOAT), RGBA_FLOAT);
+    Scene alone(frame_of(RGBA_FLOAT), RGBA_FLOAT), first = alone, second = alone;
     alone.session.message = "of an earlier frame", alone.session.message_type = kOfxMessageError;
     CHECK(alone.render() == kOfxStatOK && alone.session.message_type != kOfxMessageError);
     OfxStatus status = kOfxStatFailed;
@@ -319,11 +299,12 @@ void save(const char *path) {
     scene.session.parameters.clear();
     CHECK(scene.render() == kOfxStatOK);
     shot::Bytes bytes = scene.output.get(0, 3);
-    CHECK_OK(luxfer_image_save(shot::make(bytes, shot::width, shot::height, 3, FLOAT, LUXFER_COLOUR_LINEAR).get(), path, 1));
+    const shot::Image picture = shot::make(bytes, shot::width, shot::height, 3, FLOAT, LUXFER_COLOUR_LINEAR);
+    CHECK_OK(luxfer_image_save(picture.get(), path, 1));
 }
 
 void run(const std::string &header) {
-    describes_itself(header);
+    description::check_all(*plugin, header);
     paints_like_the_library(RGBA_FLOAT, LUXFER_COLOUR_LINEAR);
     paints_like_the_library(RGBA_FLOAT, LUXFER_COLOUR_LINEAR, kOfxImageEffectContextFilter);
     paints_like_the_library({FLOAT, 4, true, {-7, 5}, 0}, LUXFER_COLOUR_LINEAR);
@@ -335,8 +316,10 @@ void run(const std::string &header) {
     masks_the_artwork();
     mixes_kinds_of_pixels();
     keeps_to_the_window();
+    ignores_pixels_beyond_the_region();
     enlarges_the_preview();
     says_what_is_missing();
+    passes_warnings_on();
     refuses_what_does_not_fit();
     survives_bad_numbers();
     ends_when_asked();

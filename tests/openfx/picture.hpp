@@ -1,4 +1,5 @@
-// Pixels in the memory of a host: of any depth, with or without alpha, with rows in either order and bytes between them.
+// Pixels in the memory of a host: of any depth, with or without alpha, with rows in either order and bytes between
+// them.
 #pragma once
 
 #include <ofxImageEffect.h>
@@ -37,6 +38,12 @@ public:
         return {layout.origin.x, layout.origin.y, layout.origin.x + int(width), layout.origin.y + int(height)};
     }
 
+    // The region of definition: without the border.
+    OfxRectI defined() const {
+        const OfxRectI b = bounds();
+        return {b.x1 + border, b.y1 + border, b.x2 - border, b.y2 - border};
+    }
+
     // The address of the pixel at column x and row y, counted from the top left.
     unsigned char *at(std::uint32_t x, std::uint32_t y) {
         const std::uint32_t row = layout.is_top_down ? y : height - 1 - y;
@@ -45,11 +52,13 @@ public:
 
     // Copies packed samples of `count` channels from the top left into the channels from `first` on, or out of them.
     void set(const std::vector<unsigned char> &packed, std::size_t first, std::size_t count) {
-        copy(first, count, [&](unsigned char *pixel, std::size_t i, std::size_t n) { std::memcpy(pixel, &packed[i], n); });
+        const std::size_t bytes = count * layout.depth.bytes;
+        for_each(first, bytes, [&](unsigned char *pixel, std::size_t i) { std::memcpy(pixel, &packed[i], bytes); });
     }
     std::vector<unsigned char> get(std::size_t first, std::size_t count) {
-        std::vector<unsigned char> packed(std::size_t(width) * height * count * layout.depth.bytes);
-        copy(first, count, [&](unsigned char *pixel, std::size_t i, std::size_t n) { std::memcpy(&packed[i], pixel, n); });
+        const std::size_t bytes = count * layout.depth.bytes;
+        std::vector<unsigned char> packed(std::size_t(width) * height * bytes);
+        for_each(first, bytes, [&](unsigned char *pixel, std::size_t i) { std::memcpy(&packed[i], pixel, bytes); });
         return packed;
     }
 
@@ -66,15 +75,16 @@ public:
     Layout layout;
     std::uint32_t width, height;
     int row_bytes;
+    int border = 0; // pixels in memory beyond the region of definition, on each side
     std::vector<unsigned char> memory;
 
 private:
+    // Calls a function with the address of a channel of each pixel, from the top left, and with 0, step, 2 step, ...
     template <class Function>
-    void copy(std::size_t first, std::size_t count, const Function &function) {
-        const std::size_t bytes = count * layout.depth.bytes;
+    void for_each(std::size_t channel, std::size_t step, const Function &function) {
         std::size_t i = 0;
         for (std::uint32_t y = 0; y < height; y++)
-            for (std::uint32_t x = 0; x < width; x++, i += bytes)
-                function(at(x, y) + first * layout.depth.bytes, i, bytes);
+            for (std::uint32_t x = 0; x < width; x++, i += step)
+                function(at(x, y) + channel * layout.depth.bytes, i);
     }
 };

@@ -28,8 +28,8 @@ inline Image adopt(luxfer_image *image) {
     return Image(image, [](luxfer_image *released) { luxfer_release(released); });
 }
 
-inline luxfer_image_view packed(Bytes &bytes, std::uint32_t w, std::uint32_t h, std::uint32_t channels, luxfer_sample sample,
-                                luxfer_colour_space space) {
+inline luxfer_image_view packed(Bytes &bytes, std::uint32_t w, std::uint32_t h, std::uint32_t channels,
+                                luxfer_sample sample, luxfer_colour_space space) {
     luxfer_image_view view;
     CHECK_OK(luxfer_image_view_init(&view, sizeof view));
     view.width = w;
@@ -137,10 +137,12 @@ struct Frame {
         Bytes bytes = read(images().at(clip), layout.depth, stored);
         Picture picture(layout, is_target ? width : exemplar_width, is_target ? height : exemplar_height);
         picture.set(bytes, 0, 3);
-        if (layout.channels == 4) // alpha: bytes of any value
-            for (std::uint32_t y = 0; y < picture.height; y++)
-                for (std::uint32_t x = 0; x < picture.width; x++)
-                    std::memset(picture.at(x, y) + 3 * layout.depth.bytes, int((7 * x + 3 * y) % 60), layout.depth.bytes);
+        if (layout.channels == 4) {
+            Bytes alpha(std::size_t(picture.width) * picture.height * layout.depth.bytes);
+            for (std::size_t i = 0; i < alpha.size(); i++)
+                alpha[i] = (unsigned char)(7 * (i / layout.depth.bytes) % 60); // any finite numbers
+            picture.set(alpha, 3, 1);
+        }
         same[clip] = make(bytes, picture.width, picture.height, 3, layout.depth, stored);
         pictures.erase(clip);
         pictures.emplace(clip, std::move(picture));
