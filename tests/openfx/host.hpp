@@ -187,7 +187,8 @@ private:
 
 class Host : public effect::Host {
 public:
-    Host() {
+    // An old host has neither messages that stay nor a progress bar.
+    explicit Host(bool is_old) : is_old_(is_old) {
         _properties.setStringProperty(kOfxPropName, "luxfer.test");
         for (const char *context : {kOfxImageEffectContextFilter, kOfxImageEffectContextGeneral})
             _properties.setStringProperty(kOfxImageEffectPropSupportedContexts, context, contexts_++);
@@ -196,6 +197,12 @@ public:
         _properties.setIntProperty(kOfxImageEffectPropSupportsMultiResolution, 1);
         _properties.setIntProperty(kOfxImageEffectPropSupportsMultipleClipDepths, 1);
         _properties.setIntProperty(kOfxImageEffectPropSupportsTiles, 1);
+    }
+
+    const void *fetchSuite(const char *name, int version) override {
+        const std::string suite = name;
+        const bool is_new = (suite == kOfxMessageSuite && version == 2) || suite == kOfxProgressSuite;
+        return is_old_ && is_new ? nullptr : effect::Host::fetchSuite(name, version);
     }
 
     effect::Instance *newInstance(void *session, effect::ImageEffectPlugin *plugin, effect::Descriptor &descriptor,
@@ -216,6 +223,7 @@ public:
     OfxStatus clearPersistentMessage() override { return kOfxStatOK; }
 
 private:
+    bool is_old_;
     int contexts_ = 0;
 };
 

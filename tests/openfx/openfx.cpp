@@ -1,8 +1,10 @@
 // Runs the OpenFX plug-in in a host made with OpenFX's own library for hosts, and compares its pictures, to the bit,
 // with those of the C interface.
 //
-//   openfx FOLDER HEADER [PICTURE.png]   FOLDER contains luxfer.ofx.bundle; HEADER is luxfer/stylize.h, whose ranges
-//                                        and defaults the parameters must have; the first picture is saved, if asked
+//   openfx FOLDER HEADER    FOLDER contains luxfer.ofx.bundle; HEADER is luxfer/stylize.h, whose ranges and defaults
+//                           the parameters must have
+//   openfx FOLDER old       tests what differs in an old host
+//   openfx FOLDER FILE.png  saves a picture
 #include "description.hpp"
 #include "host.hpp"
 #include "shot.hpp"
@@ -42,13 +44,18 @@ struct Scene {
 
     OfxStatus render(const char *context = kOfxImageEffectContextGeneral) { return render(output.bounds(), context); }
 
-    OfxStatus render(const OfxRectI &window, const char *context = kOfxImageEffectContextGeneral) {
+    std::unique_ptr<host::effect::Instance> make_instance(const char *context) {
         session.clips = {{"Output", &output}};
         for (auto &picture : frame.pictures)
             session.clips[picture.first] = &picture.second;
-        const std::unique_ptr<host::effect::Instance> instance(plugin->createInstance(context, &session));
+        std::unique_ptr<host::effect::Instance> instance(plugin->createInstance(context, &session));
         CHECK(instance != nullptr && instance->createInstanceAction() != kOfxStatFailed);
         CHECK(instance->getClipPreferences());
+        return instance;
+    }
+
+    OfxStatus render(const OfxRectI &window, const char *context = kOfxImageEffectContextGeneral) {
+        const auto instance = make_instance(context);
         CHECK(instance->getOutputPreMultiplication() == kOfxImageUnPreMultiplied);
         const OfxPointD scale = {1, 1};
         CHECK(instance->getRegionOfDefinitionAction(0, scale, region) == kOfxStatOK);
@@ -193,6 +200,26 @@ void ignores_pixels_beyond_the_region() {
     CHECK(larger.output.memory == scene.output.memory);
 }
 
+// Every input is needed as a whole, however small the wanted part is. The host library asks this only of effects with
+// tiles.
+void demands_whole_inputs() {
+    namespace property = OFX::Host::Property;
+    Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT);
+    const auto instance = scene.make_instance(kOfxImageEffectContextGeneral);
+    const property::PropSpec time[] = {{kOfxPropTime, property::eDouble, 1, true, "0"}, property::propSpecEnd};
+    property::Set arguments(time), results;
+    for (const char *clip : {"Source", "ExemplarNormals", "Artwork"}) {
+        const std::string name = std::string("OfxImageClipPropRoI_") + clip;
+        const property::PropSpec region = {name.c_str(), property::eDouble, 4, false, "0"};
+        results.createProperty(region);
+    }
+    CHECK(instance->mainEntry(kOfxImageEffectActionGetRegionsOfInterest, instance->getHandle(), &arguments, &results) ==
+          kOfxStatOK);
+    CHECK(results.getDoubleProperty("OfxImageClipPropRoI_Source", 2) == shot::width);
+    CHECK(results.getDoubleProperty("OfxImageClipPropRoI_ExemplarNormals", 3) == shot::exemplar_height);
+    CHECK(results.getDoubleProperty("OfxImageClipPropRoI_Artwork", 2) == shot::exemplar_width);
+}
+
 void enlarges_the_preview() {
     Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT);
     scene.session.parameters["quality"] = LUXFER_STYLIZE_PREVIEW;
@@ -232,6 +259,12 @@ void refuses_what_does_not_fit() {
         CHECK(scene.fails_with("pixels at (3, 0), but"));
         scene.frame.pictures.at(clip) = Picture(RGBA_FLOAT, 50, 40);
         CHECK(scene.fails_with("50 x 40 pixels at (0, 0), but"));
+    }
+    for (const char *parameter : {"guideWeight", "weightDirect", "quality"}) {
+        Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT);
+        scene.session.parameters[parameter] = -1;
+        CHECK(scene.fails_with("")); // with the library's message
+        CHECK(!scene.session.message.empty());
     }
     Scene unknown(frame_of(RGBA_FLOAT), RGBA_FLOAT);
     unknown.frame.pictures.at("Artwork").layout.depth.name = "OfxBitDepthDouble";
@@ -294,6 +327,19 @@ void keeps_instances_apart() {
     CHECK(first.output.memory == alone.output.memory && second.output.memory == alone.output.memory);
 }
 
+// Messages are windows, so warnings go to the host's log; there is no progress bar.
+void works_in_old_hosts() {
+    Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT), dark = scene, incomplete = scene;
+    CHECK(scene.render() == kOfxStatOK && scene.session.progress_started == 0);
+    const shot::Image picture = shot::paint(scene.frame, preset(LUXFER_STYLIZE_FAST));
+    CHECK(scene.output.get(0, 3) == shot::read(picture, FLOAT, LUXFER_COLOUR_LINEAR));
+    for (const char *clip : {"Exemplar", "ExemplarDirect"})
+        std::memset(dark.frame.pictures.at(clip).memory.data(), 0, dark.frame.pictures.at(clip).memory.size());
+    CHECK(dark.render() == kOfxStatOK && dark.session.message_type == kOfxMessageLog);
+    incomplete.frame.pictures.erase("Artwork");
+    CHECK(incomplete.fails_with("Artwork is not connected"));
+}
+
 void save(const char *path) {
     Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT);
     scene.session.parameters.clear();
@@ -317,6 +363,7 @@ void run(const std::string &header) {
     mixes_kinds_of_pixels();
     keeps_to_the_window();
     ignores_pixels_beyond_the_region();
+    demands_whole_inputs();
     enlarges_the_preview();
     says_what_is_missing();
     passes_warnings_on();
@@ -329,22 +376,24 @@ void run(const std::string &header) {
 } // namespace
 
 int main(int argc, char **argv) {
-    if (argc < 3)
+    if (argc != 3)
         return 2;
-    std::ifstream file(argv[2]);
-    const std::string header((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+    const std::string task = argv[2];
+    std::ifstream file(task);
     auto &plugins = *OFX::Host::PluginCache::getPluginCache();
-    host::Host application;
+    host::Host application(task == "old");
     host::effect::PluginCache effects(application);
     effects.registerInCache(plugins);
     plugins.addFileToPath(argv[1]);
     plugins.scanPluginFiles();
     plugin = effects.getPluginById("luxfer.Stylise");
     CHECK(plugin != nullptr);
-    if (plugin != nullptr && argc == 3)
-        run(header);
+    if (plugin != nullptr && task == "old")
+        works_in_old_hosts();
+    else if (plugin != nullptr && task.find(".png") != std::string::npos)
+        save(argv[2]);
     else if (plugin != nullptr)
-        save(argv[3]);
+        run({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()});
     OFX::Host::PluginCache::clearPluginCache(); // unloads the plug-in
     return check::summary("openfx");
 }

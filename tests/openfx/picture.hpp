@@ -27,7 +27,7 @@ struct Layout {
 
 class Picture {
 public:
-    static constexpr unsigned char untouched = 0x5b;
+    enum : unsigned char { untouched = 0x5b };
 
     Picture(const Layout &layout_, std::uint32_t width_, std::uint32_t height_)
         : layout(layout_), width(width_), height(height_),
