@@ -83,7 +83,7 @@ void define_parameters(OfxParamSetHandle set) {
                   {"Full", "Fast", "Preview", "Paper"});
     define_choice(set, parameter::final_vote, "Final Vote",
                   "How a pixel of the picture is computed from overlapping patches of the artwork.",
-                  {"As Quality Has It", "Plain", "Weighted", "Nearest", "Majority", "Adaptive"});
+                  {"As in Quality", "Plain", "Weighted", "Nearest", "Majority", "Adaptive"});
     define_number(set, parameter::guide_weight, "Guide Weight",
                   "Weight of all guides together, relative to the weight of the artwork.",
                   double(defaults.guide_weight), max_weight, 10);

@@ -53,9 +53,10 @@ std::optional<Frame> Frame::fetch(OfxImageEffectHandle effect, const char *clip,
     OfxPropertySetHandle properties = nullptr, image = nullptr;
     const bool is_output = std::string(clip) == kOfxImageEffectOutputClipName; // connected if another effect uses it
     if (suites().effect->clipGetHandle(effect, clip, &handle, &properties) != kOfxStatOK ||
-        (!is_output && Properties(properties).integer(kOfxImageClipPropConnected) == 0) ||
-        suites().effect->clipGetImage(handle, time, nullptr, &image) != kOfxStatOK || image == nullptr)
+        (!is_output && Properties(properties).integer(kOfxImageClipPropConnected) == 0))
         return std::nullopt;
+    if (suites().effect->clipGetImage(handle, time, nullptr, &image) != kOfxStatOK || image == nullptr)
+        throw std::runtime_error(std::string(clip) + " has no picture at this time");
     return Frame(image, clip);
 }
 

@@ -22,8 +22,8 @@ std::string in_words(const OfxRectI &area);
 /// from the bottom to the top or, if the bytes from one row to the next are negative, from the top to the bottom.
 class Frame {
 public:
-    /// Fetches a frame; nothing if the clip is not connected or has no picture at this time. Throws std::runtime_error
-    /// if the plug-in cannot read the pixels.
+    /// Fetches a frame; nothing if the clip is not connected. Throws std::runtime_error if the clip has no picture at
+    /// this time, or the plug-in cannot read its pixels.
     static std::optional<Frame> fetch(OfxImageEffectHandle effect, const char *clip, double time);
 
     /// The clip's name, for messages.

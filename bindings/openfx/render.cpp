@@ -42,11 +42,11 @@ luxfer::StylizeParams settings_of(OfxImageEffectHandle effect, double time) {
     return settings;
 }
 
-/// Fetches a frame that must be there.
-Frame fetch(OfxImageEffectHandle effect, const char *clip, double time, const char *reason) {
+/// Fetches a frame of a clip that must be connected.
+Frame fetch(OfxImageEffectHandle effect, const char *clip, double time, const char *advice) {
     std::optional<Frame> frame = Frame::fetch(effect, clip, time);
     if (!frame)
-        throw std::runtime_error(std::string(clip) + " is not connected or has no picture at this time: " + reason);
+        throw std::runtime_error(std::string(clip) + " is not connected: connect " + advice);
     return std::move(*frame);
 }
 
@@ -84,9 +84,9 @@ struct Canvas {
 
 /// Gives the library the pictures of all clips. The host may free them afterwards, while the library paints.
 Canvas set_inputs(const luxfer::Stylize &stylize, OfxImageEffectHandle effect, double time, Encoding encoding) {
-    const Frame source = fetch(effect, source_clip, time, "connect the rendering of the scene to paint");
-    const Frame exemplar = fetch(effect, exemplar_clip, time, "connect the rendering that the artist has painted over");
-    const Frame artwork = fetch(effect, artwork_clip, time, "connect the exemplar as painted by the artist");
+    const Frame source = fetch(effect, source_clip, time, "the rendering of the scene to paint");
+    const Frame exemplar = fetch(effect, exemplar_clip, time, "the rendering that the artist has painted over");
+    const Frame artwork = fetch(effect, artwork_clip, time, "the exemplar as painted by the artist");
     check_areas(artwork, exemplar);
     stylize.set_artwork(artwork.colour(stylize.context(), encoding));
     if (value_of<int>(effect, parameter::mask_by_alpha, time) != 0)
@@ -131,7 +131,7 @@ void paint(OfxImageEffectHandle effect, const Properties &arguments) {
         const auto job = stylize.start(settings_of(effect, time));
         job.wait([&](double fraction) { return suites().effect->abort(effect) == 0 && bar.show(fraction); });
     }
-    const Frame output = fetch(effect, kOfxImageEffectOutputClipName, time, "the host gives no pixels to write to");
+    const Frame output = fetch(effect, kOfxImageEffectOutputClipName, time, "another effect");
     output.write(enlarge(stylize.image(), canvas.area), canvas.alpha, encoding, canvas.area,
                  arguments.rectangle(kOfxImageEffectPropRenderWindow));
     show_warnings(effect, stylize.warnings());

@@ -36,6 +36,7 @@ struct Session {
     int cancels_after = 1 << 30;              // number of updates after which the user cancels at the progress bar
     std::string message, message_type;
     int progress_started = 0, progress_ended = 0, progress_updates = 0, questions = 0;
+    std::string without_picture; // a clip that is connected, but has no picture at this time
     bool has_bad_data = false, has_bad_rows = false; // defects of the pictures that the host gives
 };
 
@@ -83,7 +84,7 @@ public:
         return {double(b.x1), double(b.y1), double(b.x2), double(b.y2)};
     }
     effect::Image *getImage(OfxTime, const OfxRectD *) override {
-        return picture_ ? new Image(*this, *picture_, session_) : nullptr;
+        return picture_ && session_.without_picture != getName() ? new Image(*this, *picture_, session_) : nullptr;
     }
 
 private:

@@ -237,6 +237,11 @@ void says_what_is_missing() {
         scene.frame.pictures.erase(clip);
         CHECK(scene.fails_with(std::string(clip) + " is not connected"));
     }
+    for (const char *clip : {"Source", "Direct", "Output"}) {
+        Scene scene(frame_of(RGBA_FLOAT), RGBA_FLOAT);
+        scene.session.without_picture = clip;
+        CHECK(scene.fails_with(std::string(clip) + " has no picture at this time"));
+    }
     Scene half(frame_of(RGBA_FLOAT), RGBA_FLOAT);
     half.frame.pictures.erase("ExemplarDirect");
     CHECK(half.fails_with("Direct is connected, but ExemplarDirect is not"));
