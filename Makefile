@@ -9,6 +9,7 @@
 #             into the guide (runs the sections of the benches that draw them; make bench ONLY=stylit:knobs runs one)
 # make blender  builds the Blender extension, with the library inside, into out/blender/
 # make test-blender  runs all tests of the extension; make test leaves out the one that builds and installs it
+# make openfx   builds the OpenFX plug-in, with the library inside, into out/openfx/
 # make studio   builds the page of the studio (node, npm) into the Python package; python -m luxfer.studio then serves
 #             it
 # make docs   builds the guide, with its pictures and the reference, into out/docs/
@@ -26,7 +27,7 @@ VERSION := $(shell sed -n '/^version = /{s/.*"\(.*\)"/\1/p;q;}' Cargo.toml)
 # The ending of the SONAME, as in build.rs. Before 1.0, libraries with equal minor versions are compatible.
 ABI     := $(shell echo $(VERSION) | sed -E 's/^(0\.[0-9]+|[1-9][0-9]*)\..*/\1/')
 SONAME  := $(PROFILE)/libluxfer.so.$(ABI)
-PACKAGES := cmake g++ clang binutils abigail-tools libopencv-dev libembree-dev libtbb-dev python3-venv pkg-config valgrind
+PACKAGES := cmake g++ clang binutils abigail-tools libopencv-dev libembree-dev libtbb-dev libexpat1-dev python3-venv pkg-config valgrind
 
 BENCHES  := $(patsubst benches/%.rs,%,$(wildcard benches/*.rs))
 ONLY     ?= $(BENCHES)
@@ -34,7 +35,7 @@ GUIDE    := $(filter-out lighting_transfer stylize,$(patsubst examples_c/%.c,%,$
 
 TRADE    := features:knobs segment vp warp emission:knobs relight render:kitchen error_control stylit:presets:knobs transfer:curves precision
 
-.PHONY: all lib demo format doc clippy deny advisories msrv lint test bench trade blender test-blender studio studio-setup docs peers setup packages tools clean
+.PHONY: all lib demo format doc clippy deny advisories msrv lint test bench trade blender test-blender openfx studio studio-setup docs peers setup packages tools clean
 
 all: lib $(PROFILE)/THIRD-PARTY.txt
 
@@ -72,7 +73,7 @@ packages:
 	  $$root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $$missing </dev/null; \
 	fi
 tools: packages
-	@benches/peers/install.sh mitsuba python dask exr usd report exchange glare onnx docs studio bpy deny
+	@benches/peers/install.sh mitsuba python dask exr usd report exchange glare onnx docs studio bpy deny openfx
 	@$(MAKE) --no-print-directory studio-setup
 
 # Rustup's minimal profile lacks rustfmt and clippy. They are added if the Rust servers can be reached; otherwise the
@@ -149,6 +150,15 @@ test-blender: lib
 	@benches/peers/install.sh python bpy
 	@cd tests/blender && for name in first_result artworks layers add_on extension; do \
 	  LUXFER_LIBRARY=$(CURDIR)/$(LIB) ../../target/peers/bpy/bin/python -W ignore::DeprecationWarning -m unittest -v test_$$name || exit 1; done
+
+# OPENFX_ROOT may name a folder of the OpenFX sources.
+openfx: lib $(PROFILE)/THIRD-PARTY.txt
+	@[ -n "$(OPENFX_ROOT)" ] || benches/peers/install.sh openfx
+	@cmake -S . -B target/openfx -DCMAKE_BUILD_TYPE=Release -DLUXFER_TESTS=OFF -DLUXFER_LIB_DIR="$(abspath $(PROFILE))" \
+	  -DOPENFX_ROOT="$(abspath $(OPENFX_ROOT))" -DLUXFER_OPENFX_FOLDER="$(CURDIR)/out/openfx"
+	@cmake --build target/openfx --target luxfer_openfx
+	@cp $(PROFILE)/THIRD-PARTY.txt out/openfx/luxfer.ofx.bundle/Contents/Resources
+	@echo out/openfx/luxfer.ofx.bundle
 
 # The page of the studio. The lockfile states versions and checksums of the npm packages.
 PAGE := bindings/python/luxfer/studio/static/index.html

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Checks everything that users compile with clang: the header with all of clang's warnings, as C and as C++; the
 # wrapper with all warnings that apply to it, with and without exceptions; the examples, the harnesses and the guide's
-# programs with strict warnings.
+# programs with strict warnings, and so the OpenFX plug-in if OPENFX_ROOT or target/peers/openfx has the OpenFX sources.
 #
 #   clang.sh SOURCE      exits with 77 if clang is not installed
 set -eu
@@ -29,4 +29,10 @@ done
 for program in tests/docs/*.cpp tests/package/*.cpp tests/cpp/wrapper*.cpp tests/cpp/abi_contract.cpp tests/cpp/host.cpp tests/cpp/unload.cpp tests/cpp/start_up.cpp; do
   clang++ -std=c++17 $strict -fsyntax-only -Iinclude -Ibindings/cpp "$program"
 done
+openfx="${OPENFX_ROOT:-target/peers/openfx}"
+if [ -d "$openfx/include" ]; then
+  for program in bindings/openfx/*.cpp; do
+    clang++ -std=c++17 $strict -fsyntax-only -Iinclude -Ibindings/cpp -isystem "$openfx/include" "$program"
+  done
+fi
 echo "clang: no warning"

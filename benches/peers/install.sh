@@ -83,6 +83,30 @@ case " ${wanted:-texture_synthesis} " in
     ;;
 esac
 
+# The OpenFX headers, and the official library for hosts, which the test of the OpenFX plug-in uses. The crate
+# openfx-sys carries the tree of the official repository.
+install_openfx() {
+  case " ${wanted:-openfx} " in *" openfx "*) ;; *) return ;; esac
+  [ -d target/peers/openfx ] && return
+  echo "installing openfx to compare with"
+  name=openfx-sys-0.1.0
+  sum=8c33f9e9c468d420ce2d683397834faaa9249566af5160c1e8169a48bb799679
+  part=target/peers/openfx.part
+  rm -rf "$part"
+  mkdir -p "$part"
+  python3 - "https://static.crates.io/crates/openfx-sys/$name.crate" "$part/crate" <<'END' &&
+import sys, urllib.request
+with urllib.request.urlopen(sys.argv[1], timeout=60) as answer, open(sys.argv[2], "wb") as file:
+    file.write(answer.read())
+END
+    echo "$sum  $part/crate" | sha256sum --check --quiet &&
+    tar -xzf "$part/crate" -C "$part" "$name/openfx/LICENSE.md" "$name/openfx/include" "$name/openfx/HostSupport" &&
+    mv "$part/$name/openfx" target/peers/openfx ||
+    echo "openfx could not be installed" >&2
+  rm -rf "$part"
+}
+install_openfx
+
 # ebsynth with its CPU back end. No package registry has it, so it is installed only if its repository can be reached;
 # EBSYNTH_SOURCE may name a copy of the repository.
 install_ebsynth() {
