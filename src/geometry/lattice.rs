@@ -148,7 +148,7 @@ impl SeenLattice {
     }
 
     /// Returns the free site, beside an occupied one, on which a point of the image lies.
-    fn free_site(&self, point: DVec2) -> Option<DVec2> {
+    pub fn free_site(&self, point: DVec2) -> Option<DVec2> {
         let place = self.place(point)?;
         let site = place.round();
         let occupied = || self.steps.iter().flatten();

@@ -17,6 +17,7 @@
 //! Not modelled: lamps darker than the plane that they light, such as the housing of an uplight; lamps behind a grid.
 
 mod footprint;
+mod on_lattice;
 mod painted;
 mod proposed;
 mod rays;

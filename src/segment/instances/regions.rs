@@ -5,9 +5,11 @@ use super::footprint::Footprint;
 use super::tree::Tree;
 use crate::error::Result;
 use crate::exec;
+use crate::geometry::lattice::Spot;
 use crate::image::{Image, pyramid, try_vec};
 use crate::job::Job;
 use crate::maths;
+use glam::{DMat2, DVec2};
 
 /// Standard deviation of the blur of L* before the tree is built, in pixels. It keeps noise of single pixels from
 /// forming regions. [convention]
@@ -19,6 +21,8 @@ const GRADIENT_SMOOTHING: f32 = 1.0;
 const LEVELS_PER_L: f32 = 2.55;
 /// Brightness levels per doubling of L* above 100. Only photos with values above white reach them. [convention]
 const LEVELS_PER_DOUBLING: f32 = 32.0;
+/// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention: exact]
+const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
 /// The highest brightness level. [convention]
 const MAX_LEVEL: f32 = 1023.0;
 
@@ -343,13 +347,26 @@ impl Regions {
         [self.x[node] / self.area[node], self.y[node] / self.area[node]]
     }
 
-    /// Lengths in pixels of the axes of the ellipse with the node's second moments, the long axis first.
-    pub fn axes(&self, node: usize) -> [f64; 2] {
+    /// Central second moments xx, yy and xy of the pixels' centres.
+    fn moments(&self, node: usize) -> [f64; 3] {
         let area = self.area[node];
         let [u, v] = self.centre(node);
-        let [xx, yy, xy] = [self.xx[node] / area - u * u, self.yy[node] / area - v * v, self.xy[node] / area - u * v];
+        [self.xx[node] / area - u * u, self.yy[node] / area - v * v, self.xy[node] / area - u * v]
+    }
+
+    /// The node as a spot of the photo.
+    pub fn spot(&self, node: usize) -> Spot {
+        let [xx, yy, xy] = self.moments(node);
+        let pixel = DMat2::from_diagonal(DVec2::splat(PIXEL_VARIANCE));
+        let covariance = DMat2::from_cols(DVec2::new(xx, xy), DVec2::new(xy, yy)) + pixel;
+        Spot { centre: DVec2::from_array(self.centre(node)) + 0.5, inverse: covariance.inverse() }
+    }
+
+    /// Lengths in pixels of the axes of the ellipse with the node's second moments, the long axis first.
+    pub fn axes(&self, node: usize) -> [f64; 2] {
+        let [xx, yy, xy] = self.moments(node);
         // Add the variance within a pixel: a twelfth of its squared side.
-        ellipse([xx, yy, xy], 1.0 / 12.0)
+        ellipse([xx, yy, xy], PIXEL_VARIANCE)
     }
 
     /// Area divided by the area of the ellipse with the node's second moments: 1 for an ellipse, 0.95 for a rectangle,

@@ -64,7 +64,7 @@ const MAX_BREADTH_RATIO: f64 = 1.5;
 const MIN_CUT_AREA: f64 = 0.06;
 /// A region lies on the plane if at least this share of the ring of pixels around it lies on the plane.
 /// [judged on 28 photos]
-const ON_PLANE: f64 = 0.5;
+pub const ON_PLANE: f64 = 0.5;
 /// A region in a hole of the plane's mask must have at least this share of its pixels on the face of the room that
 /// holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
@@ -101,18 +101,18 @@ const NEARLY: f64 = 0.7;
 
 /// What a region must show to count as a lamp.
 #[derive(Clone, Copy)]
-struct Limits {
+pub struct Limits {
     /// Minimum contour gradient, and minimum contrast to the ring around the region, as a share of the minima in
     /// [`LampLimits`].
-    contrast: f64,
+    pub contrast: f64,
     /// Maximum share of the region's pixels that may lie under negative strokes.
-    negatives: f64,
+    pub negatives: f64,
     /// Minimum number of pixels of the region.
-    pixels: f64,
+    pub pixels: f64,
     /// Factor of [`LampLimits::min_area`].
-    area: f64,
+    pub area: f64,
     /// Amount of L* by which the region may be darker than the least L* of the model.
-    dimmer: f64,
+    pub dimmer: f64,
 }
 
 /// Limits for any region: the limits of [`LampLimits`] unchanged, no pixel under negative strokes, any number of
@@ -168,7 +168,7 @@ impl Similar {
 }
 
 /// The limits that a lamp must meet, derived from the lamps under the strokes.
-struct LampLimits {
+pub struct LampLimits {
     min_area: f64,
     max_area: f64,
     /// Limits on the area and the aspect, measured on a face of the room; `None` if the room has no box layout.
@@ -261,6 +261,7 @@ impl Search<'_> {
             }
         }
         self.add_alike(&model, painted, &taken, &mut chosen, &mut similar, job)?;
+        self.add_on_lattice(&model, painted, &taken, &mut chosen, &mut similar, job)?;
         self.add_in_line(&model, painted, &taken, &mut chosen, &mut similar, job)?;
         Ok(similar)
     }
@@ -384,7 +385,7 @@ impl Search<'_> {
     /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
     /// strokes. For their order see [`AREA_POWER`]. Nodes that contain a chosen node, and nodes inside a lamp under a
     /// stroke, are left out.
-    fn candidates(
+    pub fn candidates(
         &self,
         model: &LampLimits,
         painted: &[u32],
@@ -534,7 +535,7 @@ impl Search<'_> {
     }
 
     /// Contrast of a node to its ring, relative to the minimum for a lamp of its size.
-    fn ring_likeness(&self, model: &LampLimits, node: usize, ring: &Surroundings) -> f64 {
+    pub fn ring_likeness(&self, model: &LampLimits, node: usize, ring: &Surroundings) -> f64 {
         ring.contrast / (model.ring * sharpness(self.regions.area[node]))
     }
 
@@ -545,7 +546,7 @@ impl Search<'_> {
     }
 
     /// Whether at least [`ON_FACE`] of a node's pixels show the face of the room that holds the lamps.
-    fn is_on_face(&self, node: usize) -> bool {
+    pub fn is_on_face(&self, node: usize) -> bool {
         let surface = self.regions.surface.as_ref();
         surface.is_some_and(|surface| surface.on_face[node] >= ON_FACE * self.regions.area[node])
     }

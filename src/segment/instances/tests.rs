@@ -327,6 +327,28 @@ fn a_lamp_whose_coloured_glow_leaves_a_hole_in_the_mask_of_the_plane_is_found() 
 }
 
 #[test]
+fn a_dim_lamp_counts_on_a_free_site_of_the_lattice_of_the_others_and_not_beside_it() {
+    // Lamps at every 60 pixels across and every 30 down; the last one is so dim that it is doubtful.
+    let dim_lamp_counts = |dim: [usize; 4]| {
+        let sites = (0..3).flat_map(|row| (0..4).map(move |column| [20 + 60 * column, 14 + 30 * row]));
+        let mut lamps: Vec<[usize; 4]> = sites.map(|[x, y]| [x, y, x + 20, y + 10]).collect();
+        *lamps.last_mut().unwrap() = dim;
+        let mut features = features_with(&lamps);
+        for (i, pixel) in features.data.chunks_exact_mut(CHANNELS).enumerate() {
+            if is_in(dim, i % WIDTH, i / WIDTH) {
+                pixel[0] -= 6.0;
+            }
+        }
+        let mask = segment_in(&features, &[stroke(true, &[[24.0, 19.0], [36.0, 19.0]])], Some(&ceiling())).mask;
+        assert!(lamps[..11].iter().all(|r| mask.pixel(r[0] + 10, r[1] + 5)[0] > 0.5));
+        mask.pixel(dim[0] + 10, dim[1] + 5)[0] > 0.5
+    };
+    assert!(dim_lamp_counts([200, 74, 220, 84]));
+    assert!(!dim_lamp_counts([228, 74, 248, 84]), "off the lattice");
+    assert!(!dim_lamp_counts([200, 76, 220, 80]), "smaller than the lamps");
+}
+
+#[test]
 fn without_strokes_lamps_beyond_the_plane_may_have_other_surroundings() {
     // As in the test above, but the ceiling beyond the mask is darker by 15 units of L*.
     let cut = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(y < 50)]).unwrap();
