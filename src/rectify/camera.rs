@@ -1,5 +1,6 @@
 //! Estimates the camera from vanishing points: focal length and orthonormal room axes, given the principal point.
 
+use super::axes::{Axes, Focal, Prior, direction, focal_length};
 use super::focal::FocalPrior;
 use super::params::Params;
 use super::sphere::{Refined, round_covariance};
@@ -9,17 +10,11 @@ use crate::geometry::linear::symmetric_eigen;
 use crate::geometry::perspective::{HORIZONTAL_A, HORIZONTAL_B, VERTICAL};
 use crate::geometry::{FocalSource, Perspective};
 use crate::maths;
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec3};
 
 /// Standard deviation, in radians, of an axis that no line determines and only a convention fixes (for instance, that
 /// the camera is upright). [convention]
 pub const FREE_ERROR: f64 = 0.5;
-/// Maximum cosine of the angle between two room axes before they are made orthogonal; it corresponds to an angle of
-/// 66°. This angle lies between the 90° of two axes and the small angle between two estimates of one axis. [convention]
-const MAX_AXIS_COSINE: f64 = 0.4;
-/// Range of the ratio of the estimated focal length to its start value. An estimate outside this range is discarded:
-/// the directions then do not determine the focal length. [convention: a factor of ten]
-const FOCAL_CHANGE: std::ops::Range<f64> = 0.1..10.0;
 
 /// The estimated camera, with the vanishing point of each room axis.
 pub struct EstimatedCamera {
@@ -40,16 +35,10 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     let principal = params.principal(width, height);
     let expected = FocalPrior::new(params, width);
     let orthogonal = &found.points[..found.points.len().min(3)];
-    let Focal { focal, spread: focal_spread, source } = focal_length(orthogonal, principal, params.focal, expected);
-
-    // Drop each direction that is far from perpendicular to a direction with better support: it is not a room axis.
+    let prior = Prior { principal, given: params.focal, expected, longer_side: width.max(height) as f64 };
+    let Axes { points: chosen, focal, .. } = prior.axes(orthogonal);
+    let Focal { focal, spread: focal_spread, source } = focal;
     let ray = |p: &VanishingPoint| direction(p.point, principal, focal);
-    let mut chosen: Vec<usize> = Vec::new();
-    for (k, p) in orthogonal.iter().enumerate() {
-        if chosen.iter().all(|&c| ray(&orthogonal[c]).dot(ray(p)).abs() < MAX_AXIS_COSINE) {
-            chosen.push(k);
-        }
-    }
 
     // Name the axes: the direction nearest the image's vertical becomes the vertical axis. Of the other two, the
     // direction nearest the viewing direction becomes the second horizontal axis. With fewer than three directions, the
@@ -97,29 +86,6 @@ pub fn orient(found: &Vanishing, width: usize, height: usize, params: &Params) -
     EstimatedCamera { perspective, focal_spread, vanishing_points, squareness, expected, axis_of }
 }
 
-/// A focal length in pixels, the standard deviation of its logarithm, and its source.
-struct Focal {
-    focal: f64,
-    spread: f64,
-    source: FocalSource,
-}
-
-/// Returns the given focal length, or else an estimate from the vanishing points and the prior.
-fn focal_length(points: &[VanishingPoint], principal: DVec2, given: Option<f64>, expected: FocalPrior) -> Focal {
-    match (given, focal_from_points(points, principal, expected.focal)) {
-        (Some(focal), _) => Focal { focal, spread: 0.0, source: FocalSource::Given },
-        (None, Some((log_focal, spread))) => {
-            // Combine the estimate with the prior, both weighted by inverse variance. The prior thus decides only
-            // where the points constrain the focal length weakly.
-            let (a, b) = (maths::powi(spread, -2), maths::powi(expected.spread, -2));
-            let focal = maths::exp((log_focal * a + maths::ln(expected.focal) * b) / (a + b));
-            let source = if a > b { FocalSource::VanishingPoints } else { expected.source };
-            Focal { focal, spread: (a + b).sqrt().recip(), source }
-        }
-        (None, None) => Focal { focal: expected.focal, spread: expected.spread, source: expected.source },
-    }
-}
-
 /// Re-estimates the camera from the vanishing points of its axes, ignoring points that no segment supports.
 pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: FocalPrior) -> Perspective {
     let known: Vec<VanishingPoint> = points.iter().filter(|v| v.support > 0).cloned().collect();
@@ -129,50 +95,6 @@ pub fn reestimate(camera: &Perspective, points: &[VanishingPoint; 3], expected: 
         points.each_ref().map(|p| (p.support > 0).then(|| (direction(p.point, camera.principal, focal), p.error))),
     );
     Perspective { focal, axes, ..*camera }
-}
-
-/// Returns the unit direction in camera space whose vanishing point is the given homogeneous pixel.
-pub fn direction(point: DVec3, principal: DVec2, focal: f64) -> DVec3 {
-    (point.truncate() - principal * point.z).extend(point.z * focal).normalize()
-}
-
-/// Estimates the logarithm of the focal length in pixels, and the standard deviation of this logarithm. `start` is a
-/// first guess of the focal length in pixels. `None` if the points do not determine the focal length, or if the
-/// estimate differs from `start` by more than a factor of 10.
-///
-/// The directions of two points `(v1, w1)` and `(v2, w2)` (homogeneous pixels) are orthogonal if
-/// `(v1 - w1 c) · (v2 - w2 c) + f² w1 w2 = 0`, where `c` is the principal point. Each pair gives one such equation,
-/// which is linear in f². Its weight is the inverse variance of the angle between the two directions. The iteration is
-/// needed because the weights depend on f.
-fn focal_from_points(points: &[VanishingPoint], principal: DVec2, start: f64) -> Option<(f64, f64)> {
-    let mut square = start * start;
-    let mut deviation = f64::INFINITY;
-    for _ in 0..20 {
-        let (mut information, mut right) = (0.0, 0.0);
-        for (i, p) in points.iter().enumerate() {
-            for q in &points[..i] {
-                let (a, b) = (p.point.truncate() - principal * p.point.z, q.point.truncate() - principal * q.point.z);
-                let focal = square.sqrt();
-                let norm = a.extend(p.point.z * focal).length() * b.extend(q.point.z * focal).length();
-                let (g, k) = (a.dot(b) / norm, p.point.z * q.point.z / norm);
-                let weight = 1.0 / (p.error * p.error + q.error * q.error).max(1e-24);
-                information += weight * k * k;
-                right -= weight * g * k;
-            }
-        }
-        let next = right / information;
-        if !(next.is_finite() && next > 0.0) {
-            return None;
-        }
-        deviation = (1.0 / information).sqrt() / (2.0 * next);
-        let converged = (next / square - 1.0).abs() < 1e-12;
-        square = next;
-        if converged {
-            break;
-        }
-    }
-    (deviation.is_finite() && FOCAL_CHANGE.contains(&(square.sqrt() / start)))
-        .then(|| (maths::ln(square) / 2.0, deviation.max(1e-9)))
 }
 
 /// Returns the rotation nearest to the given directions, each weighted by its certainty (Wahba's problem, solved by

@@ -32,6 +32,7 @@
 //! rooms whose walls are not at right angles. The axes of such rooms are made orthogonal, and
 //! [`View::squareness`] reports their deviation from right angles.
 
+mod axes;
 mod biweight;
 mod camera;
 pub mod canny;

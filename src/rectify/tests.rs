@@ -11,6 +11,7 @@ use crate::rng::Rng;
 use glam::{DMat3, DQuat, DVec3};
 
 mod lens;
+mod perpendicular;
 
 const SIZE: (usize, usize) = (800, 600);
 

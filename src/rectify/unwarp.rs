@@ -1,6 +1,7 @@
 //! Texture unwarping (§5.3). The room axes and the focal length give the homography of the plane with its true aspect
 //! ratio; their errors give the expected error of the corners.
 
+use super::axes::direction;
 use super::camera::{self, FREE_ERROR};
 use super::plane::{Plane, choose, marked_pixels};
 use super::{UnwarpParams, Unwarped, View, quad, resample};
@@ -96,7 +97,7 @@ fn uncertainty(plane: &Plane, view: &View, corners: [DVec2; 4], pixel_size: f64)
     for (k, point) in points.iter().enumerate().filter(|(_, p)| p.support > 0) {
         for step in deviations(&point.covariance) {
             let mut points = points.clone();
-            let ray = camera::direction(point.point, camera.principal, camera.focal);
+            let ray = direction(point.point, camera.principal, camera.focal);
             points[k].point = (camera.intrinsics() * (ray + step * SMALL)).normalize();
             moved.push(flat(&camera::reestimate(camera, &points, expected)));
         }
