@@ -13,6 +13,9 @@ use glam::DVec2;
 
 /// Regions with fewer pixels than this are ignored, because the pixel grid dominates their form. [bench photos:tune]
 const MIN_PIXELS: f64 = 12.0;
+/// Shapes with fewer pixels than this do not overrule certain lines, because blur and bloom make small lamps round at
+/// every tilt. [bench photos:tune, photos:real]
+const MIN_CERTAIN_PIXELS: f64 = 100.0;
 /// `LATTICE_FOCALS`: number of focal lengths on either side of the expected focal length for which the tilt of a
 /// lattice is tried. `LATTICE_FOCAL_STEP`: logarithm of the ratio between neighbouring focal lengths. [convention]
 const LATTICE_FOCALS: i32 = 10;
@@ -29,8 +32,9 @@ pub struct Evidence {
 
 impl Evidence {
     /// The lamps that the regions of a mask show. Regions that touch the border of the photo or have fewer than
-    /// [`MIN_PIXELS`] pixels are left out.
-    pub fn of_mask(mask: &Image, camera: &Perspective) -> Result<Self> {
+    /// [`MIN_PIXELS`] pixels are left out, and shapes of fewer than [`MIN_CERTAIN_PIXELS`] if they must overrule certain
+    /// lines (`over_lines`).
+    pub fn of_mask(mask: &Image, camera: &Perspective, over_lines: bool) -> Result<Self> {
         let mut whole = Regions::of(mask)?.moments([mask.width, mask.height])?;
         whole.retain(|region| !region.is_cut && region.area >= MIN_PIXELS);
         whole.sort_by(|a, b| b.area.total_cmp(&a.area));
@@ -40,7 +44,9 @@ impl Evidence {
         let centre = |region: &Moments| region.centre - camera.principal;
         let shape = |region: &Moments| Shape::new(centre(region), region.covariance, &lens, bloom_unit);
         let spot = |region: &Moments| Spot { centre: lens.ideal(centre(region)), inverse: region.covariance.inverse() };
-        let shapes = whole.iter().take(likeness::MAX_SHAPES).map(shape).collect();
+        let min_pixels = if over_lines { MIN_CERTAIN_PIXELS } else { MIN_PIXELS };
+        let large = whole.iter().filter(|region| region.area >= min_pixels);
+        let shapes = large.take(likeness::MAX_SHAPES).map(shape).collect();
         let spots: Vec<Spot> = whole.iter().map(spot).collect();
         let lamps = Self { shapes, lattice: Lattice::find(&spots), shape_weight: 1.0 };
         Ok(Self { shape_weight: lamps.weight_of_shapes(camera.focal), ..lamps })

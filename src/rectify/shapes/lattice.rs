@@ -15,10 +15,12 @@ const CENTRE_ERROR: f64 = 0.5;
 const SITE_ERROR: f64 = 0.015;
 /// Most lattices of lamps are symmetric. A lattice with a right angle between its shortest steps costs `(deviation /
 /// ASYMMETRY)²`, where the deviation is the cosine of the angle. Lattices with equally long steps, and lattices of
-/// which every second row is shifted by half a step, are rarer and cost `RARE_SYMMETRY_COST` more. No lattice costs
-/// more than `MAX_ASYMMETRY_COST`. [bench photos:tune]
+/// which every second row is shifted by half a step, are rarer and cost `RARE_SYMMETRY_COST` more; lattices with both
+/// symmetries cost only `HEXAGONAL_COST` more, because both hardly appear together by chance. No lattice costs more than
+/// `MAX_ASYMMETRY_COST`. [bench photos:tune]
 const ASYMMETRY: f64 = 0.03;
 const RARE_SYMMETRY_COST: f64 = 4.0;
+const HEXAGONAL_COST: f64 = 1.0;
 const MAX_ASYMMETRY_COST: f64 = 8.0;
 
 /// Degrees of freedom of a homography. [convention: exact]
@@ -122,6 +124,8 @@ impl Lattice {
 pub enum Symmetry {
     /// The two shortest steps are at a right angle.
     RightAngle,
+    /// The two shortest steps are equally long, at an angle of 60 degrees.
+    Hexagonal,
     /// The two shortest steps are equally long, or every second row is shifted by half a step.
     Other,
 }
@@ -134,12 +138,13 @@ impl Symmetry {
         let product = a.dot(b).abs();
         let square = |deviation: f64| maths::powi(deviation / ASYMMETRY, 2);
         let right_angle = square(product / (short * long));
-        let other =
-            square((long / short - 1.0).min((1.0 - 2.0 * product / (short * short)).abs())) + RARE_SYMMETRY_COST;
-        match () {
-            _ if right_angle <= other.min(MAX_ASYMMETRY_COST) => (Some(Self::RightAngle), right_angle),
-            _ if other <= MAX_ASYMMETRY_COST => (Some(Self::Other), other),
-            _ => (None, MAX_ASYMMETRY_COST),
-        }
+        let [equal, shifted] = [long / short - 1.0, 1.0 - 2.0 * product / (short * short)].map(square);
+        let symmetries = [
+            (Some(Self::RightAngle), right_angle),
+            (Some(Self::Hexagonal), equal + shifted + HEXAGONAL_COST),
+            (Some(Self::Other), equal.min(shifted) + RARE_SYMMETRY_COST),
+        ];
+        let best = symmetries.into_iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        best.filter(|best| best.1 <= MAX_ASYMMETRY_COST).unwrap_or((None, MAX_ASYMMETRY_COST))
     }
 }

@@ -37,26 +37,30 @@ use tilt::Tilt;
 /// the two components of the stretch. The five unknowns are the normal (two), the focal length, the common size and
 /// the bloom. [convention]
 const MIN_SHAPES: usize = 2;
+/// Minimum number of shapes that may overrule certain lines: nine measurements, more than there are unknowns.
+/// [convention]
+const MIN_SHAPES_OVER_LINES: usize = 3;
 /// A tilt is accepted only if it decreases the cost of the lamps by at least this, compared with the tilt that the
 /// lines imply. The cost is on the scale of a chi-square. [bench photos:tune]
 const MIN_GAIN: f64 = 15.0;
 /// Maximum cost of an accepted tilt: as a share of the cost of the tilt that the lines imply (`MAX_SHARE`), and per
-/// shape if there is no lattice (`MAX_COST`). These limits reject shapes of several kinds, whose cost is high at every
-/// tilt.
-/// [bench photos:tune]
+/// shape if there is no lattice (`MAX_COST`; `MAX_CERTAIN_COST` if the lines are certain). These limits reject shapes of
+/// several kinds, whose cost is high at every tilt. [bench photos:tune]
 const MAX_SHARE: f64 = 0.3;
 const MAX_COST: f64 = 1.5;
+const MAX_CERTAIN_COST: f64 = 0.5;
 
 impl View {
     /// Corrects the view such that the lamps marked by `lamps`, on the plane marked by `plane`, have equal size and
-    /// form and lie on a lattice, if they can, in fronto-parallel view. `None` if the lines determine the plane's
-    /// normal well and the lamps lie on no lattice, if the caller gave the focal length, if there are too few lamps, if
-    /// the lamps already agree with the view, or if they contradict each other.
+    /// form and lie on a lattice, if they can, in fronto-parallel view. `None` if the caller gave the focal length, if
+    /// there are too few lamps for what the lines tell, if the lamps already agree with the view, or if they contradict
+    /// each other.
     pub fn corrected_by_lamps(&self, plane: &Image, lamps: &Image, job: Job) -> Result<Option<View>> {
         let Some((by_lines, error)) = self.tilt_by_lines(plane) else { return Ok(None) };
-        let lamps = Evidence::of_mask(lamps, &self.perspective)?;
         let is_certain = error <= MAX_DIRECTION_ERROR;
-        if lamps.shapes.len() < MIN_SHAPES || is_certain && lamps.lattice.is_none() {
+        let lamps = Evidence::of_mask(lamps, &self.perspective, is_certain)?;
+        let min_shapes = if is_certain { MIN_SHAPES_OVER_LINES } else { MIN_SHAPES };
+        if lamps.shapes.len() < min_shapes && lamps.lattice.is_none() {
             return Ok(None);
         }
         let found = search::find(&lamps, (by_lines, error), self.expected_focal, job)?;
@@ -82,16 +86,19 @@ impl View {
 
 /// Whether the lamps agree if their plane has the tilt `tilt`, and agree clearly less if it has the tilt `than` that
 /// the lines imply. If the lamps lie on a lattice, only the lattice counts. To overrule lines that are certain, it must
-/// have a right angle: with a free focal length, most lattices can have one of the rarer symmetries.
+/// have a right angle or be hexagonal: with a free focal length, most lattices can have one of the rarer symmetries.
 fn is_better(lamps: &Evidence, tilt: &Tilt, (than, is_certain): (&Tilt, bool)) -> bool {
     let Some(lattice) = &lamps.lattice else {
         let [cost, before] = [tilt, than].map(|tilt| lamps.cost(tilt));
-        return is_gain(cost, before) && cost < MAX_COST * lamps.shapes.len() as f64;
+        let max_cost = if is_certain { MAX_CERTAIN_COST } else { MAX_COST };
+        return is_gain(cost, before) && cost < max_cost * lamps.shapes.len() as f64;
     };
-    let symmetry = lattice.symmetry(tilt);
-    is_gain(lattice.cost(tilt), lattice.cost(than))
-        && lattice.is_exact(tilt)
-        && (symmetry == Some(Symmetry::RightAngle) || symmetry.is_some() && !is_certain)
+    let may_overrule = match lattice.symmetry(tilt) {
+        Some(Symmetry::RightAngle | Symmetry::Hexagonal) => true,
+        Some(Symmetry::Other) => !is_certain,
+        None => false,
+    };
+    may_overrule && lattice.is_exact(tilt) && is_gain(lattice.cost(tilt), lattice.cost(than))
 }
 
 fn is_gain(cost: f64, before: f64) -> bool {

@@ -11,6 +11,7 @@ use crate::maths;
 use crate::rectify::camera::FREE_ERROR;
 use crate::rectify::focal::FocalPrior;
 use crate::rectify::sphere::{STRAIGHTNESS, outer, round_covariance};
+use crate::rectify::warnings::MAX_DIRECTION_ERROR;
 use glam::{DMat3, DVec3};
 
 /// Number of plane normals tried, spread over the sphere about 6 degrees apart. [convention]
@@ -42,8 +43,10 @@ const MAX_ROLL_COST: f64 = 9.0;
 /// A tilt is rejected if the cosine of the angle between its normal and the normal that the lines imply is below this.
 /// The test is loose: it allows angles up to 78 degrees. It rejects every tilt that puts the plane on the other side of
 /// the camera, such as a floor instead of a ceiling. A lattice of lamps itself shows on which side its plane lies; no
-/// tilt is then rejected. [bench photos:tune]
+/// tilt is then rejected. If the lines are certain, the limit is [`MIN_CERTAIN_COSINE`], 45 degrees: rows of small lamps
+/// seen at a low angle are alike on many tilts. [bench photos:tune, photos:real]
 const MIN_COSINE: f64 = 0.2;
+const MIN_CERTAIN_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// A tilt and its uncertainty.
 #[derive(Clone, Copy, Debug)]
@@ -75,7 +78,8 @@ impl TotalCost<'_> {
 
     fn by(&self, cost: Cost, tilt: &Tilt) -> f64 {
         let cosine = tilt.normal.dot(self.lines);
-        if cosine < MIN_COSINE && self.lamps.lattice.is_none() {
+        let min_cosine = if self.lines_error <= MAX_DIRECTION_ERROR { MIN_CERTAIN_COSINE } else { MIN_COSINE };
+        if cosine < min_cosine && self.lamps.lattice.is_none() {
             return f64::INFINITY;
         }
         let by_focal = maths::powi(maths::ln(tilt.focal / self.expected.focal) / self.expected.spread, 2);

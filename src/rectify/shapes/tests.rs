@@ -94,9 +94,15 @@ fn equal_discs_show_the_tilt_of_their_plane_and_the_focal_length() {
 }
 
 #[test]
-fn a_view_that_lines_determine_stays() {
-    let wrong = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.01);
-    assert!(corrected(&wrong, &discs(&scattered(|_| 0.06))).is_none());
+fn equal_discs_overrule_lines_that_are_certain_within_45_degrees_if_they_are_many() {
+    let all = scattered(|_| 0.06);
+    let near = view(DVec3::new(0.1, -0.5, 0.86).normalize(), 0.01);
+    let found = corrected(&near, &discs(&all)).expect("the discs contradict the lines");
+    assert!(angle(&near) > 0.35 && angle(&found) < 0.03, "{} rad", angle(&found));
+    assert!(corrected(&near, &discs(&all[..2])).is_none());
+    // These lines take a wall for the plane.
+    let far = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.01);
+    assert!(corrected(&far, &discs(&all)).is_none());
 }
 
 #[test]
@@ -154,6 +160,18 @@ fn a_lattice_shows_the_tilt_of_its_plane_although_its_lamps_and_the_lines_contra
     assert!(angle(&found) < 0.02 && angle(&found) < 3.0 * error, "{} rad, stated {error}", angle(&found));
     assert!((found.perspective.focal / FOCAL).ln().abs() < 0.05, "{}", found.perspective.focal);
     assert_eq!(found.lattice_lamps, 11);
+}
+
+#[test]
+fn a_hexagonal_lattice_overrules_lines_that_are_certain() {
+    let wrong = view(DVec3::new(0.1, -0.99, 0.1).normalize(), 0.01);
+    let sites = (0..4).flat_map(|row| (0..5).map(move |column| (f64::from(column), f64::from(row))));
+    let place =
+        |(column, row): (f64, f64)| DVec2::new(column + 0.5 * (row % 2.0) - 2.2, 0.75f64.sqrt() * row + 2.0) * 0.35;
+    let places: Vec<DVec2> = sites.map(place).collect();
+    let found = corrected(&wrong, &discs(&unlike(&places))).expect("the lattice contradicts the lines");
+    assert!(angle(&found) < 0.02, "{} rad", angle(&found));
+    assert!((found.perspective.focal / FOCAL).ln().abs() < 0.05, "{}", found.perspective.focal);
 }
 
 #[test]
