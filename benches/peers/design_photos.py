@@ -117,8 +117,8 @@ def recomputed(found: design.Arrangement) -> list:
     return out
 
 
-def line(photo: str, name: str, empty: design.Project, folder: str | None) -> dict:
-    """Makes a design, prints it, and returns what a table needs."""
+def line(photo: str, name: str, empty: design.Project, given: argparse.Namespace) -> dict:
+    """Makes a design, prints it, records it, and returns what a table needs."""
     begun, used = time.perf_counter(), time.process_time()
     found = designed(photo, empty)
     seconds, cpu = time.perf_counter() - begun, time.process_time() - used
@@ -151,10 +151,14 @@ def line(photo: str, name: str, empty: design.Project, folder: str | None) -> di
     for s in second:
         if not s.holds or not s.confirms:
             print(f"    {s}", flush=True)
-    if folder:
-        Path(folder).mkdir(parents=True, exist_ok=True)
+    if given.record:
+        with Path(given.record).open("a") as out:
+            out.write(json.dumps(row) + "\n")
+    if given.pictures:
+        folder = Path(given.pictures)
+        folder.mkdir(parents=True, exist_ok=True)
         views = pictures.views(found.project.room, found.project.lit(), 480, 320, 64)
-        Path(folder, f"{photo}-{name}.png").write_bytes(next(iter(views.values())))
+        (folder / f"{photo}-{name}.png").write_bytes(next(iter(views.values())))
     return row
 
 
@@ -218,10 +222,7 @@ def main() -> None:
             continue
         if name not in empty:
             empty[name] = ROOMS[name]()
-        rows.append(line(photo, name, empty[name], given.pictures))
-        if given.record:
-            with Path(given.record).open("a") as out:
-                out.write(json.dumps(rows[-1]) + "\n")
+        rows.append(line(photo, name, empty[name], given))
     if rows:
         print(summary(rows))
 
