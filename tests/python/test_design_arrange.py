@@ -131,6 +131,52 @@ class Arrangements(Case):
         self.assertEqual([lamp.dimmer for lamp in again.project.luminaires], [lamp.dimmer for lamp in lamps])
         self.assertEqual([lamp.position for lamp in again.project.luminaires], [lamp.position for lamp in lamps])
 
+    def test_luminaires_to_measure_scale_with_the_pattern(self):
+        made = lambda scale: design.Product.panel(context(), 0.3 * scale, 0.3 * scale, 1000.0)  # noqa: E731
+        lit = project().requiring(at_least("mean", 400))
+        search = design.Search(scales=(0.5, 1.0), turns=(0.0,))
+        found = lit.arrange(design.Offer.to_measure(made, search.scales), search=search)
+        self.assertTrue(found.feasible, found.explanation())
+        self.assertGreater(len(found.project.luminaires), 4)
+        self.assertAlmostEqual(found.offer.product.size[0], 0.15, places=5, msg="half the pattern, half the opening")
+        self.assertLess(found.look.pattern, 0.1, "as a made-to-measure luminaire keeps the luminous share")
+        # One size for all scales changes the statistics.
+        fixed = lit.arrange([made(1.0)], search=search)
+        self.assertGreater(fixed.look.pattern, 2 * found.look.pattern)
+
+    def test_equal_light_shares_its_coefficients(self):
+        kinds = [coefficients.kind(room(), panel(f), (1.0, 1.0, 1.0)) for f in (1000.0, 1500.0)]
+        narrow = replace(kinds[0], intensities=kinds[0].intensities ** 2)
+        self.assertEqual([kinds[0].like(k) for k in (kinds[1], narrow)], [True, False])
+        desk = areas.task(room(), "desk", (1.2, 1.0, 2.8, 2.0), 0.75)
+        table = coefficients.measure(room(), kinds, [[0.0], [0.0]], [desk], [], 0.01, 0.8, 5)
+        lamps = motif.Placed(np.array([[1.5, 1.5]]), np.zeros(1), np.ones(1), np.ones((1, 3)), np.ones((1, 2)))
+        one, more = (table.model(n, lamps).value(at_least("mean", 1), np.ones(1)) for n in (0, 1))
+        self.assertAlmostEqual(more / one, 1.5, places=6)
+
+    def test_a_reserve_is_kept(self):
+        exact = design.Settings(maintenance=0.8, samples=4096)
+        lit = replace(project(dimmer=0.1), settings=exact).requiring(at_least("mean", 50))
+        for reserve in (0.0, 0.1):
+            solution = lit.solve(design.Wishes(reserve=reserve))
+            value = solution.checked.findings[0].value
+            self.assertLess(abs(value / 50 - max(reserve, 0.005) - 1), 0.02, f"{value} lx with a reserve of {reserve}")
+        with self.assertRaisesRegex(ValueError, "reserve = 1"):
+            lit.solve(design.Wishes(reserve=1.0))
+
+    def test_the_darkest_points_are_measured(self):
+        desk = areas.task(room(), "desk", (0.2, 0.2, 3.8, 2.8), 0.75)
+        lux = np.linspace(100, 200, desk.count)
+        lux[7] = 1.0
+        few = areas.thinned(desk, 8, lux)
+        points = few.patches[0].points[few.patches[0].keep]
+        self.assertIn(desk.patches[0].points[desk.patches[0].keep][7].tolist(), points.tolist())
+        # They count for the smallest value, but not for the mean, which stays that of the spread points.
+        spread = areas.thinned(desk, 8)
+        self.assertEqual(few.weights.shape, (few.count,))
+        self.assertEqual(int((few.weights > 0).sum()), spread.count)
+        self.assertAlmostEqual(few.weights.sum(), 1)
+
     def test_what_no_pattern_meets_is_explained(self):
         lit = project().requiring(at_least("mean", 60), at_most("density", 0.5))
         small = design.Search(scales=(0.7, 1.0), turns=(0.0,), offsets=(0.0,))

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -38,6 +39,8 @@ CARPET = 0.03
 LOOK = 1.0
 #: Smallest share of the rays that must meet a plane for the plane to count as the wall. [convention]
 WALL_SHARE = 0.15
+#: Darkest points that a thinned area keeps, as a share of its other points. [convention]
+DARK_SHARE = 0.5
 #: Number of vertical planes around a point. Their mean illuminance stands for the cylindrical illuminance. An odd
 #: number gives the accuracy of twice this number.
 #: [convention]
@@ -95,6 +98,8 @@ class Patch:
     """Points along the second edge."""
     keep: NDArray[np.bool_]
     """Points (rows, columns) that belong to the area."""
+    extra: NDArray[np.bool_] | None = None
+    """Those of them that do not count for the mean; None: all count."""
 
     @property
     def points(self) -> NDArray[np.float64]:
@@ -124,12 +129,13 @@ class Area:
     notes: tuple[str, ...] = ()
     """A note about the area, such as that a wall has no points."""
 
-    @property
+    @cached_property
     def weights(self) -> NDArray[np.float64]:
         """Share of the area that each point stands for, because rectangles differ in the spacing of their points."""
         patches = self.patches[:1] if self.kind == "cylindrical" else self.patches
         cells = [np.linalg.norm(np.cross(p.across, p.down)) / p.keep.size for p in patches]
-        out = np.repeat(cells, [int(p.keep.sum()) for p in patches])
+        counts = [p.keep[p.keep] if p.extra is None else ~p.extra[p.keep] for p in patches]
+        out = np.concatenate([c * v for c, v in zip(cells, counts)])
         return out / out.sum()
 
     @property
@@ -245,18 +251,28 @@ def walls(
     return _filled(area, [keep for _, keep in found])
 
 
-def thinned(area: Area, count: int) -> Area:
-    """The area with at most about this number of its points, evenly spread, from which means are estimated."""
+def thinned(area: Area, count: int, lux: NDArray[np.float64] | None = None) -> Area:
+    """The area with at most about this number of its points, evenly spread, from which means are estimated. With the
+    illuminance of its points in a similar light, the darkest ones are kept too, as points that only count for the
+    smallest illuminance."""
     if area.count <= count:
         return area
     # Multiples of the golden ratio, or of its generalisation to two dimensions, are evenly spread. [convention:
     # Roberts' R2 sequence]
-    share, patches = count / area.count, []
+    share, patches, start = count / area.count, [], 0
+    dark = np.zeros(area.count, bool)
+    if lux is not None:
+        dark[np.argsort(lux, kind="stable")[: max(1, round(DARK_SHARE * count))]] = True
     for patch in area.patches:
         rows, columns = np.indices(patch.keep.shape)
         some = patch.keep & ((0.7549 * rows + 0.5698 * columns) % 1 < share)
         some = some if some.any() else patch.keep
-        patches.append(replace(patch, keep=some))
+        also = np.zeros_like(some)
+        if lux is not None:
+            stop = start + int(patch.keep.sum())
+            also[patch.keep] = dark[start:stop]
+            start = 0 if area.kind == "cylindrical" else stop
+        patches.append(replace(patch, keep=some | also, extra=also & ~some))
     return replace(area, patches=tuple(patches))
 
 

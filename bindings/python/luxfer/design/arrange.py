@@ -4,8 +4,9 @@ all requirements.
 1. Find the pattern of the photo's lamps (motif.py), and make candidates: each product, with the pattern scaled, turned
    and shifted. Lamps that do not fit on the ceiling, or lie in a keep-out rectangle, are left out.
 2. Measure coefficients once (coefficients.py). With them, find the dimmers of each candidate that meet the
-   requirements. Candidates are tried in the order of a lower bound of their distance, which holds for any dimmers; the
-   search ends when no remaining candidate can be closer. Candidates that are too dark at full power are left out first.
+   requirements. Candidates are tried in the order of the distance that they have with the best dimmers without
+   requirements; the search ends when no remaining candidate can be closer. Candidates that are too dark at full power
+   are left out first.
 3. Improve scale and offset of the closest candidates by small steps.
 4. Solve for the dimmers of the closest candidate anew with its own paths, and check it with others (solve.py). If it
    does not pass, the next one is tried.
@@ -15,9 +16,10 @@ Only the paths are random, and their seeds are fixed: equal input gives an equal
 
 from __future__ import annotations
 
+import heapq
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -31,17 +33,19 @@ from .explain import Relaxation, relaxations
 from .likeness import Likeness
 from .look import distance, objective
 from .luminaires import dimmed
-from .measure import measure
+from .measure import dark_and_spread, measure
 from .motif import Motif, Placed
 from .solve import SEED_OFFSET, Solution, Wishes, first_margins, nearest, solve, start_of
 from .standard import OF_AREAS
 
 if TYPE_CHECKING:
+    from ..scene import Scene
     from .areas import Area
     from .coefficients import Coefficients, Kind
     from .constraints import Model
     from .luminaires import Luminaire, Product
     from .project import Project
+    from .rooms import Room
     from .standard import Requirement
 
 #: Margins of the first choice in addition to the margins of the solution, as a share of the limit and in units of UGR,
@@ -69,6 +73,15 @@ class Offer:
     product: Product
     kelvin: tuple[float, float] | None = None
     """Lowest and highest colour temperature of its light; None: any colour, as luminaires with coloured LEDs have."""
+    scale: float | None = None
+    """The only scale of the pattern for which it is used; None: any."""
+
+    @classmethod
+    def to_measure(
+        cls, make: Callable[[float], Product], scales: Sequence[float], kelvin: tuple[float, float] | None = None
+    ) -> list[Offer]:
+        """Luminaires that are made to measure: `make` returns the product for a pattern of a scale."""
+        return [cls(make(scale), kelvin, scale) for scale in scales]
 
 
 @dataclass(frozen=True)
@@ -159,6 +172,8 @@ class _Task:
     kinds: Sequence[Kind]
     table: Coefficients
     motif: Motif
+    pattern: NDArray[np.float64]
+    """Statistics of the photo's pattern."""
     surfaces: Sequence[Area]
     copy: NDArray[np.float64]
     """Illuminance of the surfaces by the photo's lamps, by coefficients or paths."""
@@ -184,11 +199,12 @@ def arrange(
             f"max_lamps = {search.max_lamps}: allow other scales or smaller products"
         )
     surfaces = _surfaces(project)
-    copy = _brightness(project.lit(), surfaces, project)
+    lit = project.lit()
+    copy = _brightness(lit, surfaces, project)
     angles: list[list[float]] = [[] for _ in chosen]
     for c in candidates:
         angles[c.offer] += c.lamps.angles.tolist()
-    wanted = _wanted(project.areas, project.requirements, surfaces)
+    wanted = [*_wanted(project, lit), *surfaces]
     rated = {r.area for r in project.requirements if r.quantity == "glare"}
     eyes = [o for o in project.observers if o.name in rated]
     seed, below = project.chosen.seed + SEED_OFFSET, _below(project)
@@ -196,7 +212,8 @@ def arrange(
         project.room, kinds, angles, wanted, eyes, below, project.chosen.maintenance, seed
     )
     flux = sum(lamp.flux for lamp in project.luminaires)
-    task = _Task(project, chosen, search, wishes, kinds, table, found, surfaces, copy, flux, colours)
+    pattern = _statistics(project.room, found)
+    task = _Task(project, chosen, search, wishes, kinds, table, found, pattern, surfaces, copy, flux, colours)
     return _best(task, candidates)
 
 
@@ -212,18 +229,29 @@ def _candidates(
         light = _nearest_colour(context, photo, offer.kelvin)
         kinds.append(coefficients.kind(room, offer.product, light))
         colours.append(likeness.colour_difference(photo, np.array(light)))
+    before = _statistics(room, found)
     out = []
     for number, (scale, turn) in itertools.product(range(len(offers)), itertools.product(search.scales, search.turns)):
+        if offers[number].scale not in (None, scale):
+            continue
         for offset in itertools.product(search.offsets, repeat=2):
-            made_one = _candidate(project, found, search, kinds[number], number, scale, turn, offset, colours[number])
+            made_one = _candidate(
+                project, found, before, search, kinds[number], number, scale, turn, offset, colours[number]
+            )
             if made_one is not None:
                 out.append(made_one)
     return sorted(out, key=lambda c: c.bound), kinds, colours
 
 
+def _statistics(room: Room, found: Motif) -> NDArray[np.float64]:
+    """Statistics of the photo's pattern on the ceiling."""
+    return likeness.statistics(found.placed(room), room.length * room.width)
+
+
 def _candidate(
     project: Project,
     found: Motif,
+    before: NDArray[np.float64],
     search: Search,
     one: Kind,
     number: int,
@@ -232,7 +260,7 @@ def _candidate(
     offset: tuple[float, float],
     colour: float,
 ) -> Candidate | None:
-    """A pattern of a product; None if no lamp fits, or if too many lamps fit."""
+    """A pattern of a product, compared with the statistics before; None if no lamp fits, or if too many lamps fit."""
     room, ceiling = project.room, project.room.length * project.room.width
     lamps = found.placed(room, scale, turn, offset)
     lamps = replace(lamps, sizes=np.tile(one.sides, (len(lamps.places), 1)))
@@ -244,27 +272,35 @@ def _candidate(
     lamps = lamps.only(fits)
     if not 1 <= len(lamps.places) <= search.max_lamps:
         return None
-    photo = likeness.statistics(found.placed(room), ceiling)
-    change = likeness.pattern_distance(photo, likeness.statistics(lamps, ceiling))
+    change = likeness.pattern_distance(before, likeness.statistics(lamps, ceiling))
     bound = math.hypot(change, likeness.moved(scale, turn, offset, colour))
     return Candidate(number, scale, turn, offset, lamps, change, bound)
 
 
 def _best(task: _Task, candidates: Sequence[Candidate]) -> Arrangement:
     """Searches the candidates, and checks the closest ones."""
-    margins = _margins(task.project.requirements)
+    margins = _margins(task.project.requirements, task.wishes.reserve)
     met: list[tuple[float, Candidate]] = []
     missed: list[tuple[float, Candidate]] = []
     solved = 0
-    for candidate in candidates:
+    # Distances that each candidate can reach at best, and whether they are those of the best dimmers.
+    queue = [(c.bound, False, number) for number, c in enumerate(candidates)]
+    heapq.heapify(queue)
+    while queue and solved < task.search.tries:
+        least, with_dimmers, number = heapq.heappop(queue)
         worst = sorted(d for d, _ in met)[: task.search.finalists]
-        if solved == task.search.tries or (len(worst) == task.search.finalists and candidate.bound >= worst[-1]):
+        if len(worst) == task.search.finalists and least >= worst[-1]:
             break
-        if (dark := _darkness(task, candidate, margins)) > 0:
-            missed.append((dark, candidate))
+        candidate = candidates[number]
+        model = task.table.model(candidate.offer, candidate.lamps)
+        if not with_dimmers:
+            if (dark := _darkness(task, model, margins)) > 0:
+                missed.append((dark, candidate))
+            else:
+                heapq.heappush(queue, (max(least, _unlimited(task, candidate, model)), True, number))
             continue
         solved += 1
-        total, violation = _rated(task, candidate, margins)
+        total, violation = _rated(task, candidate, margins, model)
         (missed if total is None else met).append((violation if total is None else total, candidate))
     count = len(met) + len(missed)
     met.sort(key=lambda m: m[0])
@@ -283,19 +319,25 @@ def _best(task: _Task, candidates: Sequence[Candidate]) -> Arrangement:
     return replace(final, relaxations=final.solution.relaxations)
 
 
-def _darkness(task: _Task, candidate: Candidate, margins: dict[Requirement, float]) -> float:
+def _unlimited(task: _Task, candidate: Candidate, model: Model) -> float:
+    """The total distance of a candidate with the dimmers that would be best without requirements."""
+    photo, rows, hessian, gradient = _aim(task, candidate, model)
+    dimmers = np.clip(np.linalg.solve(hessian, -gradient)[:-1], 0, task.wishes.max_dimmer)
+    return _likeness(task, candidate, photo, dimmers, task.copy * (rows @ dimmers)).total
+
+
+def _darkness(task: _Task, model: Model, margins: dict[Requirement, float]) -> float:
     """The share by which a candidate misses a mean illuminance with all lamps at their highest dimmers; 0 if it reaches
     all means. This excludes most patterns of too few lamps without solving for their dimmers."""
-    model = task.table.model(candidate.offer, candidate.lamps)
-    full = np.full(len(candidate.lamps.places), task.wishes.max_dimmer)
+    full = np.full(len(model.luminaires), task.wishes.max_dimmer)
     wanted = [(r.at_least * (1 + m), r) for r, m in margins.items() if r.quantity == "mean" and r.is_minimum]
     return max([0.0, *(1 - model.value(r, full) / limit for limit, r in wanted if limit > 0)])
 
 
-def _margins(requirements: Sequence[Requirement]) -> dict[Requirement, float]:
+def _margins(requirements: Sequence[Requirement], reserve: float) -> dict[Requirement, float]:
     """Margins for coefficients that are interpolated."""
     more = {"glare": GLARE_MARGIN, "density": 0.0, "flux": 0.0}
-    return {r: m + more.get(r.quantity, MARGIN) for r, m in first_margins(requirements).items()}
+    return {r: m + more.get(r.quantity, MARGIN) for r, m in first_margins(requirements, reserve).items()}
 
 
 def _aim(task: _Task, candidate: Candidate, model: Model) -> tuple[NDArray, NDArray, NDArray, NDArray]:
@@ -310,10 +352,10 @@ def _aim(task: _Task, candidate: Candidate, model: Model) -> tuple[NDArray, NDAr
 
 
 def _rated(
-    task: _Task, candidate: Candidate, margins: dict[Requirement, float]
+    task: _Task, candidate: Candidate, margins: dict[Requirement, float], model: Model | None = None
 ) -> tuple[float | None, float]:
     """The total distance of a candidate by the coefficients, or None, and the share by which it misses requirements."""
-    model = task.table.model(candidate.offer, candidate.lamps)
+    model = model or task.table.model(candidate.offer, candidate.lamps)
     photo, rows, hessian, gradient = _aim(task, candidate, model)
     coarse = replace(task.wishes, levels=())
     dimmers, violation = nearest(model, margins, (hessian, gradient), np.eye(len(photo)), coarse)
@@ -358,7 +400,7 @@ def _refined(
         for scale, offset in moves:
             kind, colour = task.kinds[now.offer], task.colours[now.offer]
             one = _candidate(
-                task.project, task.motif, task.search, kind, now.offer, scale, now.turn, offset, colour
+                task.project, task.motif, task.pattern, task.search, kind, now.offer, scale, now.turn, offset, colour
             )
             if one is None or one.bound >= best - MIN_GAIN:
                 continue
@@ -447,16 +489,18 @@ def _surfaces(project: Project) -> list[Area]:
     return out
 
 
-def _brightness(lit: object, surfaces: Sequence[Area], project: Project) -> NDArray[np.float64]:
+def _brightness(lit: Scene, surfaces: Sequence[Area], project: Project) -> NDArray[np.float64]:
     """Mean maintained illuminance of surfaces."""
     seed, factor = project.chosen.seed, project.chosen.maintenance
     return np.array([measure(lit, a, SURFACE_PATHS, seed + i).mean.value * factor for i, a in enumerate(surfaces)])
 
 
-def _wanted(areas: Sequence[Area], requirements: Sequence[Requirement], surfaces: Sequence[Area]) -> list[Area]:
-    """The areas whose light decides something."""
-    names = {r.area for r in requirements if r.quantity in OF_AREAS}
-    return [*(a for a in areas if a.name in names), *surfaces]
+def _wanted(project: Project, lit: Scene) -> list[Area]:
+    """The areas whose light decides something, with few points: evenly spread ones, and the darkest ones in the light
+    of the photo's lamps, such as those behind furniture."""
+    names = {r.area for r in project.requirements if r.quantity in OF_AREAS}
+    chosen = [a for a in project.areas if a.name in names]
+    return [dark_and_spread(lit, a, coefficients.POINTS, project.chosen.seed) for a in chosen]
 
 
 def _below(project: Project) -> float:

@@ -15,13 +15,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..photometry import Distribution
-from .areas import Area, Patch, thinned
+from .areas import Area, Patch
 from .constraints import Model
 from .luminaires import Luminaire, Product
 from .motif import extents, is_wide
@@ -58,11 +59,17 @@ class Kind:
     intensities: NDArray[np.float64]
     """Candela (around the axis, from the axis) at full power."""
 
-    @property
+    @cached_property
     def is_round(self) -> bool:
         """Whether a turn about the axis changes nothing."""
         same = np.ptp(self.intensities, axis=0).max() <= ROUND * max(float(self.intensities.max()), 1e-300)
         return bool(same) and abs(self.sides[0] - self.sides[1]) <= 0.01 * self.sides[0]
+
+    def like(self, other: Kind) -> bool:
+        """Whether the light of both differs by a factor only."""
+        one, two = self.intensities / self.product.flux, other.intensities / other.product.flux
+        same = one.shape == two.shape and np.abs(one - two).max() <= ROUND * one.max()
+        return bool(same) and self.is_round == other.is_round and np.allclose(self.colour, other.colour)
 
     def key(self, angle: float) -> int:
         """The direction, in whole degrees, whose coefficients hold for an angle of the long axis."""
@@ -109,13 +116,18 @@ class Grid:
     across: NDArray[np.float64]
     first: int
     """Column of the first place among all luminaires of the scene."""
+    measured: int
+    """Number of the kind whose luminaires hang there."""
 
-    def weights(self, place: NDArray[np.float64], count: int) -> NDArray[np.float64]:
-        """Weights (count) by which the luminaires of the scene stand for one at a place."""
-        out = np.zeros(count)
-        both = np.outer(_cubic(self.along, place[0]), _cubic(self.across, place[1]))
-        out[self.first : self.first + both.size] = both.ravel()
-        return out
+    @property
+    def columns(self) -> slice:
+        """The columns of its places."""
+        return slice(self.first, self.first + len(self.along) * len(self.across))
+
+    def weights(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Weights (places of the grid, n) by which the luminaires of the grid stand for luminaires at n places."""
+        both = [np.outer(_cubic(self.along, a), _cubic(self.across, b)).ravel() for a, b in places]
+        return np.stack(both, axis=1)
 
 
 def _cubic(values: NDArray[np.float64], x: float) -> NDArray[np.float64]:
@@ -145,7 +157,6 @@ class Coefficients:
     kinds: Sequence[Kind]
     grids: dict[tuple[int, int], Grid]
     """By number of the kind and its direction."""
-    count: int
     responses: dict[str, Response]
     """By the names of areas."""
     veils: dict[str, NDArray[np.float64]]
@@ -159,16 +170,27 @@ class Coefficients:
     def model(self, number: int, lamps: Placed) -> Model:
         """The responses with which requirements are evaluated, for a pattern of one kind of luminaire."""
         one = self.kinds[number]
-        keys = [one.key(float(a)) for a in lamps.angles]
-        mix = np.stack([self.grids[number, k].weights(p, self.count) for k, p in zip(keys, lamps.places)], axis=1)
+        keys = np.array([one.key(float(a)) for a in lamps.angles])
+        mixes = []
+        for key in dict.fromkeys(keys.tolist()):
+            grid = self.grids[number, key]
+            share = one.product.flux / self.kinds[grid.measured].product.flux
+            mixes.append((keys == key, grid.columns, share * grid.weights(lamps.places[keys == key])))
+
+        def mixed(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+            out = np.zeros((len(matrix), len(keys)))
+            for which, columns, weights in mixes:
+                out[:, which] = matrix[:, columns] @ weights
+            return out
+
         luminaires = [
             hung(self.room, one, (float(p[0]), float(p[1])), float(a), self.below)
             for p, a in zip(lamps.places, lamps.angles)
         ]
-        responses = {n: replace(r, matrix=r.matrix @ mix) for n, r in self.responses.items()}
+        responses = {n: replace(r, matrix=mixed(r.matrix)) for n, r in self.responses.items()}
         glare = {
             o.name: GlareResponse(
-                o, _sources(self.room, one, luminaires, o)[0], self.veils[o.name] @ mix, *self.others[o.name]
+                o, _sources(self.room, one, luminaires, o)[0], mixed(self.veils[o.name]), *self.others[o.name]
             )
             for o in self.observers
         }
@@ -186,31 +208,35 @@ def measure(
     seed: int,
     paths: int = 1024,
 ) -> Coefficients:
-    """Measures the coefficients of each kind in its directions."""
+    """Measures the coefficients of each kind in its directions. Kinds whose light differs by a factor only share the
+    places of the smallest one."""
     grids: dict[tuple[int, int], Grid] = {}
     luminaires: list[Luminaire] = []
-    for number, (one, wanted) in enumerate(zip(kinds, angles)):
-        for key in dict.fromkeys(one.key(a) for a in wanted):
+    for number in sorted(range(len(kinds)), key=lambda n: kinds[n].sides.prod()):
+        one = kinds[number]
+        for key in dict.fromkeys(one.key(a) for a in angles[number]):
+            known = [g for (n, k), g in grids.items() if k == key and one.like(kinds[n])]
+            if known:
+                grids[number, key] = known[0]
+                continue
             half = extents(np.array([float(key)]), one.sides[None])[0]
             along, across = (_places(side, h) for side, h in zip((room.length, room.width), half))
-            grids[number, key] = Grid(along, across, len(luminaires))
+            grids[number, key] = Grid(along, across, len(luminaires), number)
             luminaires += [hung(room, one, (a, b), key, below) for a in along for b in across]
     eyes = [_eyes(o) for o in observers]
-    chosen = [thinned(a, POINTS) for a in areas]
     # Without bodies: openings at all places of the grid would cover the ceiling.
-    found = respond_all(room.scene, luminaires, chosen, paths, seed, "point") if chosen else []
+    found = respond_all(room.scene, luminaires, areas, paths, seed, "point") if areas else []
     light = respond_all(room.scene, luminaires, eyes, EYE_PATHS, seed + 1, "point") if eyes else []
     responses = {r.area.name: r for r in found}
     veils = {}
     for o, seen in zip(observers, light):
         direct = np.zeros_like(seen.matrix)
-        for (number, _), grid in grids.items():
-            columns = slice(grid.first, grid.first + len(grid.along) * len(grid.across))
-            direct[:, columns] = _sources(room, kinds[number], luminaires[columns], o)[1]
+        for grid in {g.first: g for g in grids.values()}.values():
+            direct[:, grid.columns] = _sources(room, kinds[grid.measured], luminaires[grid.columns], o)[1]
         rest = np.maximum(seen.matrix - direct, INDIRECT * seen.matrix)
         veils[o.name] = np.maximum(rest, 1e-9) / math.pi
     others = {o.name: glare_parts(room.scene, o.positions, _views(o), seed + 2) for o in observers}
-    return Coefficients(room, kinds, grids, len(luminaires), responses, veils, others, observers, below, maintenance)
+    return Coefficients(room, kinds, grids, responses, veils, others, observers, below, maintenance)
 
 
 def _places(side: float, half: float) -> NDArray[np.float64]:

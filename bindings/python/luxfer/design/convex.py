@@ -8,6 +8,7 @@ Not modelled: equations, sparse matrices, limits with mixed quadratic terms.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,9 @@ GAP = 1e-9
 ARMIJO, SHRINK = 0.05, 0.5
 
 Array = NDArray[np.float64]
+
+#: Limits that hold by this share leave room for a barrier method to start. [convention]
+CLEAR = 1e-3
 
 
 @dataclass(frozen=True)
@@ -72,8 +76,15 @@ class Optimum:
     """Change of the objective per unit by which a limit is relaxed; 0 where it does not bind."""
 
 
-def minimise(hessian: Array, gradient: Array, limits: Limits, start: Array) -> Optimum:
-    """The minimum of ½ x'Hx + g'x from a start strictly inside the limits.
+def minimise(
+    hessian: Array,
+    gradient: Array,
+    limits: Limits,
+    start: Array,
+    enough: Callable[[float, float], bool] = lambda value, gap: False,
+) -> Optimum:
+    """The minimum of ½ x'Hx + g'x from a start strictly inside the limits. It ends early where the present value, which
+    is above the minimum by at most a gap, is enough.
 
     >>> limits = box(np.array([1.0, -1.0]), np.array([3.0, 1.0]))
     >>> nearest = minimise(np.eye(2), np.zeros(2), limits, np.array([2.0, 0.5]))
@@ -86,7 +97,8 @@ def minimise(hessian: Array, gradient: Array, limits: Limits, start: Array) -> O
     scale = max(1.0, abs(0.5 * x @ hessian @ x + gradient @ x))
     while True:
         x = _centre(weight, hessian, gradient, limits, x)
-        if len(limits.constant) / weight < GAP * scale:
+        gap = len(limits.constant) / weight
+        if gap < GAP * scale or enough(float(0.5 * x @ hessian @ x + gradient @ x), gap):
             break
         weight *= GROWTH
     multipliers = 1 / (weight * -limits.values(x))
@@ -107,10 +119,9 @@ def _centre(weight: float, hessian: Array, gradient: Array, limits: Limits, x: A
         curve = weight * hessian + (slopes * barrier[:, None] ** 2).T @ slopes + np.diag(limits.quadratic.T @ barrier)
         curve += 1e-12 * np.trace(curve) / len(x) * np.eye(len(x))  # [rounding]
         step = -np.linalg.solve(curve, down)
-        decrease = -(down @ step)
-        if decrease < 1e-10:  # [rounding]
-            break
-        now, length = cost(x), 1.0
+        decrease, now, length = -(down @ step), cost(x), 1.0
+        if decrease < max(1e-10, 1e-14 * abs(now)):  # [rounding: the cost cannot tell how good the last step is]
+            return x if (limits.values(x + step) >= 0).any() else x + step
         while cost(x + length * step) > now - ARMIJO * length * decrease:
             length *= SHRINK
             if length < 1e-12:  # [rounding]
@@ -119,9 +130,13 @@ def _centre(weight: float, hessian: Array, gradient: Array, limits: Limits, x: A
     return x
 
 
-def min_violation(soft: Limits, hard: Limits, start: Array, weights: Array | None = None) -> tuple[float, Optimum]:
+def min_violation(
+    soft: Limits, hard: Limits, start: Array, weights: Array | None = None, decide: bool = False
+) -> tuple[float, Optimum]:
     """The smallest r such that all soft limits hold up to weight * r (weights of 1 if not given), and where; the start
-    is strictly inside the hard limits. A weight of 0 makes a limit hard, and the start must then be inside it too."""
+    is strictly inside the hard limits. A weight of 0 makes a limit hard, and the start must then be inside it too. To
+    decide only whether all limits can hold together, it ends as soon as this is known, with an r that is larger than
+    the smallest one, at most twice as large if it is above 0."""
     weights = np.ones(len(soft.constant)) if weights is None else weights
     both = soft.relaxed(weights).joined(hard.relaxed(np.zeros(len(hard.constant))))
     worst = float(soft.values(start)[weights > 0].max(initial=0.0))
@@ -130,5 +145,10 @@ def min_violation(soft: Limits, hard: Limits, start: Array, weights: Array | Non
     floor = Limits(np.zeros((1, count + 1)), -np.eye(count + 1)[-1:], np.array([-10.0]))
     gradient = np.zeros(count + 1)
     gradient[-1] = 1.0
-    found = minimise(np.zeros((count + 1, count + 1)), gradient, both.joined(floor), np.append(start, worst + 1.0))
+
+    def enough(value: float, gap: float) -> bool:
+        return decide and (value < -CLEAR or value > 2 * gap)
+
+    begin = np.append(start, worst + 1.0)
+    found = minimise(np.zeros((count + 1, count + 1)), gradient, both.joined(floor), begin, enough)
     return float(found.x[-1]), found

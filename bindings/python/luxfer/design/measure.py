@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..illuminance import Illuminance
-from .areas import PLANES, PLANES_ERROR
+from .areas import PLANES, PLANES_ERROR, thinned
 from .intervals import Estimate, Extremes, Uniformity, mean_of, quantile
 
 if TYPE_CHECKING:
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: UGR is this factor times the logarithm of its sum. [convention: CIE 117]
 UGR_FACTOR = 8.0
+#: Paths for each point that find the darkest points of an area. [convention]
+LOOK_SAMPLES = 64
 
 
 @dataclass(frozen=True)
@@ -112,6 +114,13 @@ def measure(scene: Scene, area: Area, samples: int = 1024, seed: int = 1) -> Fie
     means = np.mean(values, axis=0)
     spread = np.sqrt(np.sum(np.square(errors), axis=0)) / PLANES
     return Field(area, means, spread, PLANES_ERROR)
+
+
+def dark_and_spread(scene: Scene, area: Area, count: int, seed: int) -> Area:
+    """At most about this number of the points of an area, and its darkest points in the light of a scene."""
+    if area.count <= count or area.kind == "cylindrical":
+        return thinned(area, count)
+    return thinned(area, count, measure(scene, area, LOOK_SAMPLES, seed).values)
 
 
 def rate(scene: Scene, observers: Observers, samples: int = 1024, seed: int = 1) -> list[Rating]:

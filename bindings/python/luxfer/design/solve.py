@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from .areas import thinned
 from .check import Checked, Settings, check
 from .constraints import DIMMABLE, Model
 from .convex import Limits, box, min_violation, minimise
 from .explain import Relaxation, joined, of_groups, relaxations
 from .look import Distance, distance, objective
 from .luminaires import Luminaire, dimmed, lit_scene
+from .measure import dark_and_spread
 from .responses import respond_all, respond_glare
 from .standard import OF_AREAS
 
@@ -58,8 +58,13 @@ class Wishes:
     paths: int = 1024
     """Paths for each point that measure the responses."""
     points: int = 0
-    """Points of each area, at most about, that measure the responses; 0: all. Fewer are faster, and need more rounds if
-    the darkest point is not among them. The check has all points."""
+    """Points of each area, at most about, that measure the responses, besides its darkest points in the light of the
+    given dimmers; 0: all. Fewer are faster, and need more rounds if the darkest point is not among them. The check has
+    all points."""
+    reserve: float = 0
+    """Share of the limits of illuminance and uniformity by which the design is aimed to exceed them, such as 0.02. The
+    confidence covers the randomness of the calculation only: a reserve is for the reflectances, the photometry and the
+    program of whoever recomputes the design."""
 
 
 @dataclass(frozen=True)
@@ -122,7 +127,7 @@ def solve(
     if wishes.levels and not (groups.sum(axis=1) == 1).all():
         raise ValueError("levels need equal dimmers within each group: other luminaires would get shares of a level")
     photo, flux = np.array([lamp.dimmer for lamp in luminaires]), np.array([lamp.product.flux for lamp in luminaires])
-    margins = first_margins(requirements)
+    margins = first_margins(requirements, wishes.reserve)
     solvable, aim = list(margins), objective(photo, flux, surfaces)
     tried: list[tuple[NDArray, Checked]] = []
     unknown: tuple[Finding, ...] = ()
@@ -182,10 +187,11 @@ def measured_model(
     if missing:
         raise ValueError(f"requirements name {', '.join(sorted(missing))}, which is no area and no group of observers")
     chosen = [a for a in areas if a.name in wanted]
-    if wishes.points:
-        chosen = [thinned(a, wishes.points) for a in chosen]
     groups = [o for o in observers if o.name in rated]
     seed = settings.seed + SEED_OFFSET
+    if wishes.points:
+        lit = lit_scene(scene, luminaires)
+        chosen = [dark_and_spread(lit, a, wishes.points, seed) for a in chosen]
     responses = respond_all(scene, luminaires, chosen, wishes.paths, seed) if chosen else []
     glare = respond_glare(scene, luminaires, groups, seed) if groups else []
     return Model(
@@ -233,11 +239,17 @@ def start_of(groups: NDArray, wishes: Wishes) -> tuple[Limits, NDArray]:
     return box(low - INSIDE, high + INSIDE), 0.5 * (low + high)
 
 
-def first_margins(requirements: Sequence[Requirement]) -> dict[Requirement, float]:
+def first_margins(requirements: Sequence[Requirement], reserve: float = 0) -> dict[Requirement, float]:
     """The requirements that dimmers can meet, with their first margins."""
+    if not 0 <= reserve < 1:
+        raise ValueError(f"reserve = {reserve} is not in [0, 1)")
     solvable = [r for r in requirements if r.quantity in DIMMABLE and not (r.quantity == "flux" and r.is_minimum)]
     return {
-        r: GLARE_MARGIN if r.quantity == "glare" else 0.0 if r.quantity in ("density", "flux") else MARGIN
+        r: GLARE_MARGIN
+        if r.quantity == "glare"
+        else 0.0
+        if r.quantity in ("density", "flux")
+        else max(MARGIN, reserve)
         for r in solvable
     }
 
@@ -250,13 +262,14 @@ def nearest(
     wishes: Wishes,
 ) -> tuple[NDArray | None, float]:
     """The dimmers that minimise the aim (see look.objective) within the limits and margins, or None if no dimmers are
-    within them, and the smallest share by which all limits can be missed together, negative if they can be met."""
+    within them, and a share by which all limits can be missed together, at most twice the smallest one, negative if
+    they can be met."""
     hard, start = start_of(groups, wishes)
     parts = [of_groups(model.limits(r, margin), groups) for r, margin in margins.items()]
     limits, violation = hard, -1.0
     if parts:
         soft = joined(parts)
-        violation, inside = min_violation(soft, hard, start)
+        violation, inside = min_violation(soft, hard, start, decide=True)
         if violation > -INSIDE:
             return None, violation
         start, limits = inside.x[:-1], soft.joined(hard)
