@@ -110,6 +110,7 @@ stage_macos() {
 # The Python package with the staged library. It is built in a copy, because setuptools would put what it built for one
 # target into the wheel of the next.
 wheel() {
+  [ -e "$1" ] || fail "no library for the wheel: $1"
   copy="$stage/wheel"
   rm -rf "$copy"
   mkdir -p "$copy/bindings" "$copy/include/luxfer"
@@ -149,7 +150,7 @@ python bindings/dist/archive.py "$top" "$out/$name.$archive"
 
 [ -z "$tag" ] || {
   step "wheel"
-  wheel "$(find "$top" -name "$library" -type f -o -name "$library.*.*.*" -type f)"
+  wheel "$(find "$top" -name "$library" ! -path '*/python/*')"
 }
 
 [ -z "$blender" ] || {

@@ -10,6 +10,10 @@ pub mod colour;
 mod comparison;
 mod containers;
 mod dilation;
+#[cfg(not(feature = "exr"))]
+mod exr_absent;
+#[cfg(feature = "exr")]
+mod exr_memory;
 pub mod file_colour;
 mod files;
 mod format;
@@ -17,7 +21,9 @@ mod inks;
 pub mod io;
 mod limits;
 mod memory;
+#[cfg(feature = "exr")]
 pub mod numbers;
+#[cfg(feature = "exr")]
 mod openexr;
 mod orientation;
 pub(crate) mod pages;
@@ -27,6 +33,7 @@ pub mod pyramid;
 mod radiance;
 mod raster;
 pub mod regions;
+#[cfg(feature = "exr")]
 mod samples;
 mod stated_space;
 mod tiff;
@@ -35,6 +42,10 @@ mod working_memory;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
 pub(crate) use buffer::{no_memory, reserve_capacity};
+#[cfg(not(feature = "exr"))]
+use exr_absent::openexr;
+#[cfg(not(feature = "exr"))]
+pub use exr_absent::numbers;
 pub use comparison::{Comparison, neighbourhood};
 pub use dilation::dilate;
 pub use memory::check as check_memory;

@@ -26,8 +26,11 @@
 //! allocated is bounded.
 
 mod accessor;
+#[cfg(not(feature = "mesh-compression"))]
+mod compression_absent;
 mod container;
 mod document;
+#[cfg(feature = "mesh-compression")]
 mod draco;
 mod export;
 mod features;
@@ -35,6 +38,7 @@ mod glossiness;
 mod import;
 mod instances;
 mod material;
+#[cfg(feature = "mesh-compression")]
 mod meshopt;
 mod nodes;
 mod origin;
@@ -43,6 +47,8 @@ mod pose;
 mod tests;
 mod vertices;
 
+#[cfg(not(feature = "mesh-compression"))]
+use compression_absent::{draco, meshopt};
 pub use export::export;
 pub use import::import;
 
