@@ -6,14 +6,16 @@
 # make dist-TARGET   builds the packages of one target, such as dist-windows-x86_64
 # make dist-check    unpacks, compiles against and runs the packages (under wine64 and qemu where needed), compares the
 #                    results bit by bit, and writes the table of the guide; make dist-check TARGETS=linux-x86_64 for one
-# make dist-reproduce  builds the packages of linux-x86_64, or of TARGETS, twice: in other folders, for other users; fails
-#                    if a file differs. It takes twice the time of dist-all
+# make dist-reproduce  builds the packages of linux-x86_64, or of TARGETS, twice: in other folders, for other users;
+#                    fails if a file differs
+# make light         builds the library without its optional parts (features of Cargo.toml), optimised for size, into
+#                    target/light; tests that each missing part says so, and prints the size
 # make dist-setup    installs compilers and emulators (Debian packages, PyPI, rustup); the other commands call it
 
 TARGETS   ?= linux-x86_64 linux-aarch64 linux-musl-x86_64 windows-x86_64 macos-universal
 DIST      := out/dist
 
-.PHONY: dist-all dist-check dist-reproduce dist-setup dist-sums
+.PHONY: dist-all dist-check dist-reproduce light dist-setup dist-sums
 
 # The wheels also hold the page of the studio, where npm can build it.
 dist-setup:
@@ -39,3 +41,10 @@ dist-check: dist-setup
 dist-reproduce: TARGETS := $(if $(findstring command,$(origin TARGETS)),$(TARGETS),linux-x86_64)
 dist-reproduce:
 	@for target in $(TARGETS); do bindings/dist/reproduce.sh $$target || exit 1; done
+
+LIGHT := target/light/light
+light:
+	$(CARGO) rustc --profile light --lib --locked --no-default-features --crate-type cdylib --target-dir target/light
+	@ln -sf libluxfer.so $(LIGHT)/$(notdir $(SONAME))
+	@$(CC) -std=c99 -O1 -Wall -Wextra -Wpedantic -Iinclude tests/light/light.c -o $(LIGHT)/test -L$(LIGHT) -lluxfer -lm -Wl,-rpath,'$$ORIGIN'
+	@cd $(LIGHT) && ./test && stat -c '%n: %s bytes' libluxfer.so

@@ -1,5 +1,5 @@
-"""Writes the list of the crates in the library as `cargo auditable` embeds it into programs: JSON packed by zlib, for the
-section `.dep-v0`. `cargo audit bin`, trivy and other scanners find it there and look for known vulnerabilities.
+"""Writes the list of the crates in the library as `cargo auditable` embeds it into programs: JSON packed by zlib, for
+the section `.dep-v0`. `cargo audit bin`, trivy and other scanners find it there and look for known vulnerabilities.
 
     auditable.py BILL OUT    BILL is the bill of materials by sbom.py
     auditable.py LIBRARY     prints the list in a library (ELF) as names and versions

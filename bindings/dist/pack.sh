@@ -16,8 +16,9 @@ cd "$root"
 CARGO="${CARGO:-cargo}"
 
 # build TRIPLE: nothing in the library may depend on where and by whom it is built. Cargo's folders and the source tree
-# are not named in it: see the Makefile. The parts of the C library that zig compiles while it links name zig's folder
-# and the current folder, so zig gets the first relative to the second, and the second by a name that all processes share.
+# are not named in it: see the Makefile. The parts of the C library that zig compiles while it links name the folder of
+# zig and the current folder. So zig gets the first relative to the second, and the second by a name that all processes
+# share.
 build() {
   RUSTFLAGS="--remap-path-prefix=${CARGO_HOME:-$HOME/.cargo}=cargo --remap-path-prefix=$root=luxfer"
   cargo="$CARGO" at=""

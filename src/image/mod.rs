@@ -10,8 +10,6 @@ pub mod colour;
 mod comparison;
 mod containers;
 mod dilation;
-#[cfg(not(feature = "exr"))]
-mod exr_absent;
 #[cfg(feature = "exr")]
 mod exr_memory;
 pub mod file_colour;
@@ -21,9 +19,9 @@ mod inks;
 pub mod io;
 mod limits;
 mod memory;
-#[cfg(feature = "exr")]
+#[cfg_attr(not(feature = "exr"), path = "absent/numbers.rs")]
 pub mod numbers;
-#[cfg(feature = "exr")]
+#[cfg_attr(not(feature = "exr"), path = "absent/openexr.rs")]
 mod openexr;
 mod orientation;
 pub(crate) mod pages;
@@ -42,10 +40,6 @@ mod working_memory;
 
 pub use buffer::{Image, MAX_SIDE, try_collect, try_push, try_vec, try_with_capacity};
 pub(crate) use buffer::{no_memory, reserve_capacity};
-#[cfg(not(feature = "exr"))]
-use exr_absent::openexr;
-#[cfg(not(feature = "exr"))]
-pub use exr_absent::numbers;
 pub use comparison::{Comparison, neighbourhood};
 pub use dilation::dilate;
 pub use memory::check as check_memory;

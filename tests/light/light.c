@@ -1,5 +1,5 @@
-/* A library without its optional parts (`make light`): each of them is refused with LUXFER_UNSUPPORTED and a message that
- * names the Cargo feature, and the rest works.
+/* A library without its optional parts (`make light`): each of them is refused with LUXFER_UNSUPPORTED and a message
+ * that names the Cargo feature, and the rest works.
  *
  *   light    writes into the current folder
  */

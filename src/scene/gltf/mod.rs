@@ -26,11 +26,9 @@
 //! allocated is bounded.
 
 mod accessor;
-#[cfg(not(feature = "mesh-compression"))]
-mod compression_absent;
 mod container;
 mod document;
-#[cfg(feature = "mesh-compression")]
+#[cfg_attr(not(feature = "mesh-compression"), path = "absent/draco.rs")]
 mod draco;
 mod export;
 mod features;
@@ -38,7 +36,7 @@ mod glossiness;
 mod import;
 mod instances;
 mod material;
-#[cfg(feature = "mesh-compression")]
+#[cfg_attr(not(feature = "mesh-compression"), path = "absent/meshopt.rs")]
 mod meshopt;
 mod nodes;
 mod origin;
@@ -47,8 +45,6 @@ mod pose;
 mod tests;
 mod vertices;
 
-#[cfg(not(feature = "mesh-compression"))]
-use compression_absent::{draco, meshopt};
 pub use export::export;
 pub use import::import;
 
