@@ -10,6 +10,7 @@
 #   luxfer-VERSION-py3-none-*.whl         the Python package with the library inside; not for musl
 #   luxfer_lighting-VERSION-*.zip         the Blender extension with the wheel inside, where Blender itself exists
 set -eu
+umask 022
 target="$1"
 . "$(dirname "$0")/targets.sh"
 cd "$root"
@@ -116,6 +117,7 @@ wheel() {
   rm -rf "$copy"
   mkdir -p "$copy/bindings" "$copy/include/luxfer"
   cp -RL bindings/python "$copy/bindings"
+  chmod -R u=rwX,go=rX "$copy"
   rm -rf "$copy/bindings/python/build"
   find "$copy" -name __pycache__ -prune -exec rm -rf {} +
   cp include/luxfer/core.h "$copy/include/luxfer"

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds the packages of a target twice, from copies of the last commit in two folders, for two users (HOME, USER) with
-# compilers and crates of their own, and compares all files.
+# Builds the packages of a target twice, from copies of the last commit in two folders, for two users (HOME, USER, umask)
+# with linkers and crates of their own, and compares all files.
 #
 #   reproduce.sh TARGET    see targets.sh; prints the checksums, and fails if any differ
 set -eu
@@ -10,8 +10,9 @@ work="$root/target/dist/reproduce"
 rustup="${RUSTUP_HOME:-$HOME/.rustup}"
 rm -rf "$work"
 
-# make_in FOLDER USER: the packages lie in FOLDER/out/dist.
+# make_in FOLDER USER UMASK: the packages lie in FOLDER/out/dist.
 make_in() {
+  umask "$3"
   mkdir -p "$1" "$work/home/$2"
   git -C "$root" archive HEAD | tar -x -C "$1"
   # The toolchains are shared, and so is the time of the last commit (targets.sh).
@@ -19,8 +20,8 @@ make_in() {
   (cd "$1/out/dist" && sha256sum -- luxfer*-*) >"$work/$2.txt"
 }
 
-make_in "$work/one" anne
-make_in "$work/another/folder/two" bob
+make_in "$work/one" anne 022
+make_in "$work/another/folder/two" bob 077
 cat "$work/anne.txt"
 diff "$work/anne.txt" "$work/bob.txt" || fail "the packages of the two builds differ: compare the files in $work"
 [ "$(wc -l <"$work/anne.txt")" -ge 1 ] || fail "no packages"
