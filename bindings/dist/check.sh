@@ -172,7 +172,8 @@ check_library() {
       [ "$(printf '%s\n' "$newest" "$glibc" | sort -V | tail -1)" = "$glibc" ] || fail "the library needs glibc $newest"
       say needs "glibc $newest"
       only_known_functions
-      python "$root/bindings/dist/auditable.py" "$top/lib/libluxfer.so" | grep -qx "luxfer $version" || fail "no list of crates in the library"
+      python "$root/bindings/dist/auditable.py" "$top/lib/libluxfer.so" >"$scratch/crates.txt" || fail "no list of crates in the library"
+      grep -qx "luxfer $version" "$scratch/crates.txt" || fail "luxfer $version is not in $(cat "$scratch/crates.txt")"
       ;;
     windows-*)
       needed="$("${prefix}objdump" -p "$top/bin/luxfer.dll" | sed -n 's/.*DLL Name: //p' | sort -f | xargs)"

@@ -28,6 +28,7 @@ pub mod ldt;
 pub mod luminaire;
 pub mod opening;
 pub mod presets;
+#[cfg(feature = "xml-luminaires")]
 mod sum;
 mod symmetry;
 pub mod temperature;

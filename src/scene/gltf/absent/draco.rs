@@ -20,10 +20,6 @@ impl Decoded {
         }
     }
 
-    pub fn count(&self) -> usize {
-        match *self {}
-    }
-
     pub fn vectors<const N: usize>(&self, _: &File, _: &Semantic, _: Index<Accessor>) -> Option<Result<Vec<[f32; N]>>> {
         match *self {}
     }
