@@ -3,7 +3,8 @@
 #
 # make dist-all      builds the packages of all TARGETS into out/dist: archives, Python wheels, Blender extensions,
 #                    bills of materials (SBOM) and SHA256SUMS
-# make dist-TARGET   builds the packages of one target, such as dist-windows-x86_64
+# make dist-TARGET   builds the packages of one target, such as dist-windows-x86_64; linux-musl-x86_64 and
+#                    macos-universal are not among TARGETS, because they have not been built to the end yet
 # make dist-check    unpacks, compiles against and runs the packages (under wine64 and qemu where needed), compares the
 #                    results bit by bit, and writes the table of the guide; make dist-check TARGETS=linux-x86_64 for one
 # make dist-reproduce  builds the packages of linux-x86_64, or of TARGETS, twice: in other folders, for other users;
@@ -12,7 +13,7 @@
 #                    target/light; tests that each missing part says so, and prints the size
 # make dist-setup    installs compilers and emulators (Debian packages, PyPI, rustup); the other commands call it
 
-TARGETS   ?= linux-x86_64 linux-aarch64 linux-musl-x86_64 windows-x86_64 macos-universal
+TARGETS   ?= linux-x86_64 linux-aarch64 windows-x86_64
 DIST      := out/dist
 
 .PHONY: dist-all dist-check dist-reproduce light dist-setup dist-sums

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds the packages of a target twice, from copies of the last commit in two folders, for two users (HOME, USER, umask)
-# with linkers and crates of their own, and compares all files.
+# Builds the packages of a target twice, from copies of the last commit in two folders, for two users (HOME, USER,
+# umask) with linkers and crates of their own, and compares all files.
 #
 #   reproduce.sh TARGET    see targets.sh; prints the checksums, and fails if any differ
 set -eu

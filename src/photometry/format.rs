@@ -3,9 +3,9 @@
 #[cfg(feature = "xml-luminaires")]
 use super::clock::Moment;
 use super::luminaire::{File, Luminaire};
-use super::{ies, ldt};
 #[cfg(feature = "xml-luminaires")]
 use super::{gldf, tm33};
+use super::{ies, ldt};
 use crate::error::{Error, Result};
 use std::path::Path;
 
