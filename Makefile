@@ -42,7 +42,7 @@ all: lib $(PROFILE)/THIRD-PARTY.txt
 # Remove folders of this machine from the library: panic messages of dependencies would name cargo's folder.
 CARGO_HOME ?= $(HOME)/.cargo
 ifeq (,$(findstring --remap-path-prefix,$(RUSTFLAGS)))
-lib: export RUSTFLAGS := $(strip $(RUSTFLAGS) --remap-path-prefix=$(CARGO_HOME)=cargo --remap-path-prefix=$(CURDIR)=luxfer)
+lib light: export RUSTFLAGS := $(strip $(RUSTFLAGS) --remap-path-prefix=$(CARGO_HOME)=cargo --remap-path-prefix=$(CURDIR)=luxfer)
 endif
 lib:
 	$(CARGO) build --release --lib

@@ -36,8 +36,8 @@ INSTALLED    = $(addprefix $(LIBDIR)/,libluxfer.so libluxfer.so.$(ABI) libluxfer
 # relative(from, to): the relative path between two folders, which need not exist.
 relative = $(shell realpath -m --relative-to='$(1)' '$(2)')
 # fill(template, folder): fills in a template and installs it into the folder.
-fill = sed -e 's|@VERSION@|$(VERSION)|g' -e 's|@ABI@|$(ABI)|g' -e 's|@INCLUDEDIR@|$(call relative,$(2),$(INCLUDEDIR))|g' \
-         $(1) | $(INSTALL) -m 644 /dev/stdin '$(DESTDIR)$(2)/$(basename $(notdir $(1)))'
+fill = sed -e 's|@VERSION@|$(VERSION)|g' -e 's|@ABI@|$(ABI)|g' -e 's|@LIBRARY@|libluxfer.so.$(VERSION)|g' -e 's|@SONAME@|libluxfer.so.$(ABI)|g' \
+         -e 's|@INCLUDEDIR@|$(call relative,$(2),$(INCLUDEDIR))|g' $(1) | $(INSTALL) -m 644 /dev/stdin '$(DESTDIR)$(2)/$(basename $(notdir $(1)))'
 
 # The installed shared library, and the file for its debug symbols.
 SHARED    = $(DESTDIR)$(LIBDIR)/libluxfer.so.$(VERSION)

@@ -87,6 +87,12 @@ impl Error {
         Self::new(ErrorKind::Format, message)
     }
 
+    /// A part of the library is missing, because it was compiled without a Cargo feature.
+    pub fn left_out(what: &str, feature: &str) -> Self {
+        let message = format!("{what} left out of this build of luxfer; build it with the Cargo feature {feature}");
+        Self::new(ErrorKind::Unsupported, message)
+    }
+
     pub fn cancelled() -> Self {
         Self::new(ErrorKind::Cancelled, "the job was cancelled")
     }

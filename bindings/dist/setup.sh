@@ -5,7 +5,7 @@ set -eu
 cd "$(dirname "$0")/../.."
 packages="gcc-aarch64-linux-gnu g++-aarch64-linux-gnu gcc-mingw-w64-x86-64-posix g++-mingw-w64-x86-64-posix qemu-user wine64
   cmake pkg-config python3-venv"
-targets="aarch64-unknown-linux-gnu x86_64-pc-windows-gnu"
+targets="aarch64-unknown-linux-gnu x86_64-unknown-linux-musl x86_64-pc-windows-gnu aarch64-apple-darwin x86_64-apple-darwin"
 
 missing=""
 for package in $packages; do dpkg -s "$package" >/dev/null 2>&1 || missing="$missing $package"; done
@@ -23,6 +23,8 @@ if [ ! -x target/peers/dist/bin/cargo-zigbuild ]; then
   target/peers/dist/bin/pip --disable-pip-version-check --quiet install ziglang cargo-zigbuild auditwheel numpy 'setuptools>=70.1' ||
     { rm -rf target/peers/dist; exit 1; }
 fi
+# The libraries that zig compiles while it links name this folder in their debug symbols, whichever Python is used.
+ln -sfn "$(cd target/peers/dist && echo lib/python3*/site-packages/ziglang/lib)" target/peers/dist/zig
 
 if command -v rustup >/dev/null; then
   installed="$(rustup target list --installed)"

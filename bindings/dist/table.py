@@ -14,7 +14,7 @@ CHECKS = ROOT / "out" / "dist" / "check"
 PAGE = ROOT / "docs" / "guide" / "platforms.md"
 BEGIN, END = "<!-- platforms: written by `make dist-check` -->", "<!-- end of platforms -->"
 HEAD = ["target", "builds", "runs here", "results bit-identical to linux-x86_64", "test programs passed", "size of the library", "wheel", "needs"]
-ORDER = ["linux-x86_64", "linux-aarch64", "windows-x86_64"]
+ORDER = ["linux-x86_64", "linux-aarch64", "linux-musl-x86_64", "windows-x86_64", "macos-universal"]
 
 
 def row(found: dict[str, str]) -> list[str]:
@@ -28,7 +28,7 @@ def row(found: dict[str, str]) -> list[str]:
         found.get("same_bits", unknown),
         found.get("passed", unknown),
         f"{int(found['bytes']) / 1e6:.1f} MB",
-        found.get("wheel", unknown),
+        found.get("wheel", "-"),
         found.get("needs", "-"),
     ]
 

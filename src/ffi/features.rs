@@ -234,10 +234,7 @@ fn network(path: &str, normalisation: luxfer_normalisation) -> Result<DepthNetwo
 
 #[cfg(not(feature = "onnx"))]
 fn network(path: &str, _: luxfer_normalisation) -> Result<DepthNetwork> {
-    Err(Error::new(
-        ErrorKind::Unsupported,
-        format!("{path}: networks were left out of this build of luxfer; build it with the Cargo feature onnx"),
-    ))
+    Err(Error::left_out("networks were", "onnx").context(path))
 }
 
 /// Computes the features. If the caller has set a network and no depth map, the network estimates the depth.

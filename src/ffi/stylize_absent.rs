@@ -5,14 +5,11 @@
 use super::context::luxfer_context;
 use super::guard::{enter, guard};
 use super::status::luxfer_status;
-use crate::error::{Error, ErrorKind, Result};
+use crate::error::{Error, Result};
 use std::ffi::c_void;
 
 pub(super) fn left_out() -> Result<()> {
-    Err(Error::new(
-        ErrorKind::Unsupported,
-        "stylisation was left out of this build of luxfer; build it with the Cargo feature stylize",
-    ))
+    Err(Error::left_out("stylisation was", "stylize"))
 }
 
 #[unsafe(no_mangle)]

@@ -55,6 +55,7 @@ impl Format {
         }
         match image::guess_format(bytes) {
             Ok(ImageFormat::Tiff) => Ok(Self::Tiff),
+            Ok(ImageFormat::WebP) if !cfg!(feature = "webp") => Err(Error::left_out("WebP files were", "webp")),
             Ok(
                 format @ (ImageFormat::Png
                 | ImageFormat::Jpeg

@@ -10,6 +10,8 @@ pub mod colour;
 mod comparison;
 mod containers;
 mod dilation;
+#[cfg(feature = "exr")]
+mod exr_memory;
 pub mod file_colour;
 mod files;
 mod format;
@@ -17,7 +19,9 @@ mod inks;
 pub mod io;
 mod limits;
 mod memory;
+#[cfg_attr(not(feature = "exr"), path = "absent/numbers.rs")]
 pub mod numbers;
+#[cfg_attr(not(feature = "exr"), path = "absent/openexr.rs")]
 mod openexr;
 mod orientation;
 pub(crate) mod pages;
@@ -27,6 +31,7 @@ pub mod pyramid;
 mod radiance;
 mod raster;
 pub mod regions;
+#[cfg(feature = "exr")]
 mod samples;
 mod stated_space;
 mod tiff;

@@ -8,7 +8,7 @@
 
 use super::io::check_regular;
 use super::openexr::{broken, first_layer, headers};
-use super::{Image, memory, try_vec, try_with_capacity};
+use super::{Image, exr_memory, try_vec, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::header::Header;
 use exr::prelude as ex;
@@ -162,8 +162,8 @@ pub fn encode(header: &FileHeader, picture: &Image, number: impl Fn([usize; 2], 
     let texts = header.attributes.iter().map(|(name, value)| name.len() + value.len() + 64).sum::<usize>();
     let channels = 3 + 2 * header.numbers;
     use ex::WritableImage;
-    let mut out = Cursor::new(try_with_capacity(memory::max_file_bytes(width, height, channels, texts))?);
-    memory::check_blocks(width, height, channels)?;
+    let mut out = Cursor::new(try_with_capacity(exr_memory::max_file_bytes(width, height, channels, texts))?);
+    exr_memory::check_blocks(width, height, channels)?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)

@@ -1,5 +1,5 @@
 //! OpenEXR files: reads flat layers of R, G, B (and A) or of a single channel; writes any layers. Only this module and
-//! the modules `samples`, `numbers` and `memory` use the crate `exr`.
+//! the modules `samples`, `numbers` and `exr_memory` use the crate `exr`.
 //!
 //! A picture has the size of the display window of its file. Pixels outside the data window are 0; pixels outside the
 //! display window are dropped. Colours are converted from the chromaticities that the file states to linear Rec.709.
@@ -10,7 +10,7 @@
 use super::file_colour::{Chromaticities, Space};
 use super::limits::{MAX_COMPRESSION, check_size};
 use super::samples::Largest;
-use super::{Image, memory, try_collect, try_with_capacity};
+use super::{Image, exr_memory, try_collect, try_with_capacity};
 use crate::error::{Error, ErrorKind, Result};
 use exr::meta::attribute;
 use exr::prelude as ex;
@@ -54,7 +54,7 @@ pub(super) fn headers(bytes: &[u8]) -> Result<exr::meta::Headers> {
             return Err(Error::format("the OpenEXR header promises more than so short a file can hold"));
         }
         // A tile may be larger than the picture, and the decoder allocates memory for the whole tile.
-        let tile = memory::block_bytes(header);
+        let tile = exr_memory::block_bytes(header);
         if tile > bytes.len().saturating_mul(MAX_COMPRESSION).max(MAX_TILE_BYTES) {
             return Err(Error::format(format!(
                 "the OpenEXR header asks for tiles of {tile} bytes, which so short a file cannot hold"
@@ -70,7 +70,7 @@ pub(super) fn first_layer(
     headers: &exr::meta::Headers,
 ) -> Result<ex::Layer<ex::AnyChannels<ex::FlatSamples>>> {
     use ex::{ReadChannels, ReadLayers};
-    memory::check_layer(headers)?;
+    exr_memory::check_layer(headers)?;
     let file = exr::image::read::any_channels::ReadAnyChannels { read_samples: Largest }
         .first_valid_layer()
         .all_attributes()
@@ -97,7 +97,7 @@ pub(super) fn probe(bytes: &[u8]) -> Result<(usize, usize, usize)> {
 
 /// Bytes of memory for reading the first layer, in addition to the picture.
 pub(super) fn working_bytes(bytes: &[u8]) -> Result<usize> {
-    Ok(memory::layer(&headers(bytes)?))
+    Ok(exr_memory::layer(&headers(bytes)?))
 }
 
 /// Decodes the first layer if it has R, G and B (and A) or a single channel; also returns the colour space that the
@@ -234,8 +234,8 @@ pub fn encode(layers: &[Layer], attributes: &[(String, String)]) -> Result<Vec<u
     let channels = layers.iter().map(|l| l.channels.len()).sum::<usize>();
     let texts = attributes.iter().map(|(name, value)| name.len() + value.len() + 64).sum::<usize>() + 64 * channels;
     let (width, height) = (first.width, first.height);
-    let mut out = Cursor::new(try_with_capacity(memory::max_file_bytes(width, height, channels, texts))?);
-    memory::check_blocks(width, height, channels)?;
+    let mut out = Cursor::new(try_with_capacity(exr_memory::max_file_bytes(width, height, channels, texts))?);
+    exr_memory::check_blocks(width, height, channels)?;
     file.write()
         .non_parallel()
         .to_buffered(&mut out)

@@ -1,8 +1,11 @@
 //! The formats of luminaire files. Recognises the format of a file, and reads and writes files of each format.
 
+#[cfg(feature = "xml-luminaires")]
 use super::clock::Moment;
 use super::luminaire::{File, Luminaire};
-use super::{gldf, ies, ldt, tm33};
+#[cfg(feature = "xml-luminaires")]
+use super::{gldf, tm33};
+use super::{ies, ldt};
 use crate::error::{Error, Result};
 use std::path::Path;
 
@@ -17,6 +20,11 @@ pub enum Format {
     Tm33,
     /// GLDF, a container.
     Gldf,
+}
+
+#[cfg(not(feature = "xml-luminaires"))]
+fn left_out() -> Error {
+    Error::left_out("luminaires in TM-33 and GLDF were", "xml-luminaires")
 }
 
 /// Splits a path such as `lamp.gldf#black` into the path of the file and the name of a variant. `#` separates the two
@@ -85,8 +93,12 @@ impl Format {
         let luminaire = match self {
             Self::Ies => ies::read(bytes)?,
             Self::Ldt => ldt::read(bytes)?,
+            #[cfg(feature = "xml-luminaires")]
             Self::Tm33 => return tm33::read_file(bytes),
+            #[cfg(feature = "xml-luminaires")]
             Self::Gldf => return gldf::read(bytes, variant),
+            #[cfg(not(feature = "xml-luminaires"))]
+            Self::Tm33 | Self::Gldf => return Err(left_out()),
         };
         Ok(File { luminaire, variants: 1, emitters: 1 })
     }
@@ -99,8 +111,12 @@ impl Format {
         match self {
             Self::Ies => ies::write(luminaire).map(String::into_bytes),
             Self::Ldt => ldt::write(luminaire).map(String::into_bytes),
+            #[cfg(feature = "xml-luminaires")]
             Self::Tm33 => tm33::write(luminaire, Moment::now()).map(String::into_bytes),
+            #[cfg(feature = "xml-luminaires")]
             Self::Gldf => gldf::write(luminaire, Moment::now()),
+            #[cfg(not(feature = "xml-luminaires"))]
+            Self::Tm33 | Self::Gldf => Err(left_out()),
         }
     }
 }

@@ -14,11 +14,13 @@
 //! Not modelled: spectra and colour rendering; maintenance; bodies in luminaire files, and luminance that varies over a
 //! luminous face.
 
+#[cfg(feature = "xml-luminaires")]
 mod clock;
 pub mod faces;
 pub mod false_colour;
 mod format;
 pub mod glare;
+#[cfg(feature = "xml-luminaires")]
 pub mod gldf;
 mod glyphs;
 pub mod ies;
@@ -26,12 +28,15 @@ pub mod ldt;
 pub mod luminaire;
 pub mod opening;
 pub mod presets;
+#[cfg(feature = "xml-luminaires")]
 mod sum;
 mod symmetry;
 pub mod temperature;
 mod text_lines;
+#[cfg(feature = "xml-luminaires")]
 pub mod tm33;
 mod type_b;
+#[cfg(feature = "xml-luminaires")]
 mod xml;
 
 pub use format::{Format, split_variant};

@@ -4,6 +4,7 @@ and the bill of materials lists what is linked, as Cargo.lock and the notices of
 import json
 import os
 import re
+import struct
 import subprocess
 import sys
 import tarfile
@@ -85,6 +86,48 @@ class Bill(unittest.TestCase):
         for edge in bill["dependencies"]:
             self.assertIn(edge["ref"], known)
             self.assertLessEqual(set(edge["dependsOn"]), known)
+
+
+class Universal(unittest.TestCase):
+    """Libraries for macOS, each of a header and its load commands, joined into one."""
+
+    def library(self, processor, length):
+        def command(kind, name):
+            text = name.encode() + b"\0"
+            text = text.ljust(-(-len(text) // 8) * 8, b"\0")
+            return struct.pack("<IIIIII", kind, 24 + len(text), 24, 2, 0, 0) + text
+
+        commands = [command(0xC, "/usr/lib/libSystem.B.dylib"), command(0xD, "@rpath/libluxfer.1.dylib")]
+        head = struct.pack("<8I", 0xFEEDFACF, processor, 3, 6, len(commands), sum(map(len, commands)), 0, 0)
+        return (head + b"".join(commands)).ljust(length, b"\1")
+
+    def test_joined_parts_are_found_again(self):
+        parts = [self.library(0x0100000C, 20000), self.library(0x01000007, 300)]
+        with tempfile.TemporaryDirectory() as folder:
+            paths = [Path(folder, name) for name in ("arm", "x86", "both")]
+            for path, part in zip(paths, parts):
+                path.write_bytes(part)
+            tool = [sys.executable, DIST / "universal.py"]
+            subprocess.run([*tool, "join", paths[2], *paths[:2]], check=True)
+            joined = paths[2].read_bytes()
+            shown = subprocess.run([*tool, "show", paths[2]], check=True, capture_output=True, text=True).stdout
+        magic, count = struct.unpack_from(">II", joined)
+        self.assertEqual((magic, count), (0xCAFEBABE, 2))
+        for k, part in enumerate(parts):
+            processor, version, offset, length, alignment = struct.unpack_from(">5I", joined, 8 + 20 * k)
+            self.assertEqual((processor, version), struct.unpack_from("<II", part, 4))
+            self.assertEqual(offset % (1 << alignment), 0)
+            self.assertEqual(joined[offset : offset + length], part)
+        needs = "@rpath/libluxfer.1.dylib needs /usr/lib/libSystem.B.dylib"
+        self.assertEqual(shown, f"arm64 {needs}\nx86_64 {needs}\n")
+
+    def test_other_files_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "other")
+            path.write_bytes(bytes(100))
+            for arguments in (["join", Path(folder, "out"), path], ["show", path], []):
+                run = subprocess.run([sys.executable, DIST / "universal.py", *arguments], capture_output=True)
+                self.assertNotEqual(run.returncode, 0)
 
 
 class Crate(unittest.TestCase):

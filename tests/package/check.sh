@@ -113,11 +113,11 @@ step "moved"
 mv prefix moved
 run_luxfer "$scratch/moved"
 by_pkg_config "$scratch/moved/$lib"
-by_cmake moved_build -DSHARED_ONLY=ON -DCMAKE_PREFIX_PATH="$scratch/moved"
+by_cmake moved_build -DLIBRARIES=luxfer -DCMAKE_PREFIX_PATH="$scratch/moved"
 mv moved prefix
 
 step "FetchContent and add_subdirectory"
-by_cmake part -DSHARED_ONLY=ON -DLUXFER_SOURCE="$source" -DLUXFER_LIB_DIR="$built"
+by_cmake part -DLIBRARIES=luxfer -DLUXFER_SOURCE="$source" -DLUXFER_LIB_DIR="$built"
 
 step "debug symbols"
 cd "prefix/$lib"

@@ -133,6 +133,7 @@ pub fn components(file: &File, index: Index<accessor::Accessor>) -> Result<usize
 
 /// Returns the integer that stands for the value 1 if an accessor holds normalised integers; `None` for other
 /// accessors.
+#[cfg(feature = "mesh-compression")]
 pub fn largest(file: &File, index: Index<accessor::Accessor>) -> Result<Option<f32>> {
     let accessor = find(file, index)?;
     let (kind, _) = storage(accessor)?;

@@ -114,8 +114,9 @@ impl<'a> File<'a> {
         let mut unpacked = Vec::new();
         for (i, packed) in self.packed() {
             let packed = packed?;
+            let (buffer, start, length) = packed.place();
             let decoded = self
-                .part(packed.buffer, packed.start, packed.length)
+                .part(buffer, start, length)
                 .and_then(|stream| packed.decode(stream))
                 .map_err(|e| e.context(format_args!("buffer view {i}")))?;
             unpacked.push((i, decoded));

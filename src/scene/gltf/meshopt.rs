@@ -18,9 +18,9 @@ const BLOCK: u64 = 8192;
 
 /// A compressed buffer view: the location of its encoded bytes, and how to decode them.
 pub struct Packed {
-    pub buffer: usize,
-    pub start: u64,
-    pub length: u64,
+    buffer: usize,
+    start: u64,
+    length: u64,
     view: BufferView,
 }
 
@@ -60,6 +60,11 @@ impl Packed {
             return Err(Error::format(message));
         }
         Ok(packed)
+    }
+
+    /// The buffer of the encoded bytes, the position of the first of them in it, and their number.
+    pub fn place(&self) -> (usize, u64, u64) {
+        (self.buffer, self.start, self.length)
     }
 
     /// Size in bytes of the decoded data.

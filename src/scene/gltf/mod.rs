@@ -28,6 +28,7 @@
 mod accessor;
 mod container;
 mod document;
+#[cfg_attr(not(feature = "mesh-compression"), path = "absent/draco.rs")]
 mod draco;
 mod export;
 mod features;
@@ -35,6 +36,7 @@ mod glossiness;
 mod import;
 mod instances;
 mod material;
+#[cfg_attr(not(feature = "mesh-compression"), path = "absent/meshopt.rs")]
 mod meshopt;
 mod nodes;
 mod origin;
