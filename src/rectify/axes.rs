@@ -12,9 +12,9 @@ const MAX_COSINE: f64 = 0.2;
 /// Minimum focal length, as a share of the longer image side, that two vanishing points imply: a lens of 12 mm on film
 /// 36 mm wide. [convention]
 const MIN_FOCAL: f64 = 1.0 / 3.0;
-/// Costs, on the scale of a chi-square, by which sets of vanishing points are compared: `MAX_UNUSUAL` bounds the cost of
-/// a focal length far from the expected one, and is the cost of one that stays unknown; `LEFT_OUT_COST` is the cost if
-/// all points are left out, each weighed by its number of lines over its error. [bench photos:tune]
+/// Costs, on the scale of a chi-square, by which sets of vanishing points are compared: `MAX_UNUSUAL` bounds the cost
+/// of a focal length far from the expected one, and is the cost of one that stays unknown; `LEFT_OUT_COST` is the cost
+/// if all points are left out, each weighed by its number of lines over its error. [bench photos:tune]
 const MAX_UNUSUAL: f64 = 3.0;
 const LEFT_OUT_COST: f64 = 10.0;
 /// Range of the ratio of the estimated focal length to its start value. An estimate outside this range is discarded:
@@ -39,10 +39,10 @@ pub struct Prior {
 }
 
 impl Prior {
-    /// Returns the vanishing points that are axes of the room, of at most three. A wrong point must not take part in the
-    /// estimate of the focal length, on which the directions of the other points depend. So of all sets whose points are
-    /// perpendicular at the focal length that they imply, this takes the one that leaves out little and implies a usual
-    /// focal length.
+    /// Returns the vanishing points that are axes of the room, of at most three. A wrong point must not take part in
+    /// the estimate of the focal length, on which the directions of the other points depend. So of all sets whose
+    /// points are perpendicular at the focal length that they imply, this takes the one that leaves out little and
+    /// implies a usual focal length.
     pub fn axes(&self, points: &[VanishingPoint]) -> Axes {
         let sets = SETS.iter().filter(|set| set.iter().all(|k| *k < points.len()));
         let best = sets.filter_map(|set| self.judge(points, set)).min_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -53,8 +53,9 @@ impl Prior {
         focal_length(points, self.principal, self.given, self.expected)
     }
 
-    /// The set of points with its cost; `None` if the points cannot all be axes. Two points imply some focal length even
-    /// if one of them is no axis, so it must be plausible. Three points that agree confirm each other, and cost nothing.
+    /// The set of points with its cost; `None` if the points cannot all be axes. Two points imply some focal length
+    /// even if one of them is no axis, so it must be plausible. Three points that agree confirm each other, and cost
+    /// nothing.
     fn judge(&self, all: &[VanishingPoint], set: &[usize]) -> Option<Axes> {
         let points: Vec<VanishingPoint> = set.iter().map(|&k| all[k].clone()).collect();
         let focal = self.focal_of(&points);

@@ -32,8 +32,8 @@ pub struct Evidence {
 
 impl Evidence {
     /// The lamps that the regions of a mask show. Regions that touch the border of the photo or have fewer than
-    /// [`MIN_PIXELS`] pixels are left out, and shapes of fewer than [`MIN_CERTAIN_PIXELS`] if they must overrule certain
-    /// lines (`over_lines`).
+    /// [`MIN_PIXELS`] pixels are left out, and shapes of fewer than [`MIN_CERTAIN_PIXELS`] if they must overrule
+    /// certain lines (`over_lines`).
     pub fn of_mask(mask: &Image, camera: &Perspective, over_lines: bool) -> Result<Self> {
         let mut whole = Regions::of(mask)?.moments([mask.width, mask.height])?;
         whole.retain(|region| !region.is_cut && region.area >= MIN_PIXELS);

@@ -16,8 +16,8 @@ const SITE_ERROR: f64 = 0.015;
 /// Most lattices of lamps are symmetric. A lattice with a right angle between its shortest steps costs `(deviation /
 /// ASYMMETRY)²`, where the deviation is the cosine of the angle. Lattices with equally long steps, and lattices of
 /// which every second row is shifted by half a step, are rarer and cost `RARE_SYMMETRY_COST` more; lattices with both
-/// symmetries cost only `HEXAGONAL_COST` more, because both hardly appear together by chance. No lattice costs more than
-/// `MAX_ASYMMETRY_COST`. [bench photos:tune]
+/// symmetries cost only `HEXAGONAL_COST` more, because both hardly appear together by chance. No lattice costs more
+/// than `MAX_ASYMMETRY_COST`. [bench photos:tune]
 const ASYMMETRY: f64 = 0.03;
 const RARE_SYMMETRY_COST: f64 = 4.0;
 const HEXAGONAL_COST: f64 = 1.0;
