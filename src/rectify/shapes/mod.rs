@@ -44,8 +44,8 @@ const MIN_SHAPES_OVER_LINES: usize = 3;
 /// lines imply. The cost is on the scale of a chi-square. [bench photos:tune]
 const MIN_GAIN: f64 = 15.0;
 /// Maximum cost of an accepted tilt: as a share of the cost of the tilt that the lines imply (`MAX_SHARE`), and per
-/// shape if there is no lattice (`MAX_COST`; `MAX_CERTAIN_COST` if the lines are certain). These limits reject shapes of
-/// several kinds, whose cost is high at every tilt. [bench photos:tune]
+/// shape if there is no lattice (`MAX_COST`; `MAX_CERTAIN_COST` if the lines are certain). These limits reject shapes
+/// of several kinds, whose cost is high at every tilt. [bench photos:tune]
 const MAX_SHARE: f64 = 0.3;
 const MAX_COST: f64 = 1.5;
 const MAX_CERTAIN_COST: f64 = 0.5;

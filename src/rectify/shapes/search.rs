@@ -43,8 +43,8 @@ const MAX_ROLL_COST: f64 = 9.0;
 /// A tilt is rejected if the cosine of the angle between its normal and the normal that the lines imply is below this.
 /// The test is loose: it allows angles up to 78 degrees. It rejects every tilt that puts the plane on the other side of
 /// the camera, such as a floor instead of a ceiling. A lattice of lamps itself shows on which side its plane lies; no
-/// tilt is then rejected. If the lines are certain, the limit is [`MIN_CERTAIN_COSINE`], 45 degrees: rows of small lamps
-/// seen at a low angle are alike on many tilts. [bench photos:tune, photos:real]
+/// tilt is then rejected. If the lines are certain, the limit is [`MIN_CERTAIN_COSINE`], 45 degrees: rows of small
+/// lamps seen at a low angle are alike on many tilts. [bench photos:tune, photos:real]
 const MIN_COSINE: f64 = 0.2;
 const MIN_CERTAIN_COSINE: f64 = std::f64::consts::FRAC_1_SQRT_2;
 

@@ -13,16 +13,16 @@ use std::ops::RangeInclusive;
 
 /// Limits for a region on a free site of the lattice. [bench photos:tune]
 const ON_LATTICE: Limits = Limits { contrast: 0.5, negatives: 0.005, pixels: 12.0, area: 0.5, dimmer: 4.0 };
-/// Range of the area of a region divided by the median area of the lamps on the lattice, both relative to the cell of the
-/// lattice at their place. Bloom enlarges distant lamps. [bench photos:tune]
+/// Range of the area of a region divided by the median area of the lamps on the lattice, both relative to the cell of
+/// the lattice at their place. Bloom enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.6..=2.0;
 /// Maximum number of times that the sites beside the lattice are searched; each time, the lattice may grow by one step.
 /// [convention]
 const ROUNDS: usize = 16;
 
 impl Search<'_> {
-    /// Adds the regions that lie on free sites beside the lattice of the lamps, and are as large as the lamps. Regions off
-    /// the plane and off the face of the room that holds the lamps are added to `similar.beyond` only.
+    /// Adds the regions that lie on free sites beside the lattice of the lamps, and are as large as the lamps. Regions
+    /// off the plane and off the face of the room that holds the lamps are added to `similar.beyond` only.
     pub fn add_on_lattice(
         &self,
         model: &LampLimits,
