@@ -21,8 +21,8 @@ const EQUAL_AREA: RangeInclusive<f64> = 0.6..=2.0;
 const ROUNDS: usize = 16;
 
 impl Search<'_> {
-    /// Adds the regions that lie on free sites beside the lattice of the lamps, and are as large as the lamps. Regions
-    /// off the plane and off the face of the room that holds the lamps are added to `similar.beyond` only.
+    /// Adds the regions of the plane, and of the face of the room that holds the lamps, that lie on free sites beside
+    /// the lattice of the lamps and are as large as the lamps.
     pub fn add_on_lattice(
         &self,
         model: &LampLimits,
@@ -33,7 +33,7 @@ impl Search<'_> {
         job: Job,
     ) -> Result<()> {
         let mut candidates = self.candidates(model, painted, chosen, ON_LATTICE)?;
-        candidates.retain(|&(node, likeness)| likeness >= 1.0 && !self.is_cut(node));
+        candidates.retain(|&(node, likeness)| likeness >= 1.0 && !self.is_cut(node) && !self.is_soft(model, node));
         candidates.extend(similar.doubtful.iter().map(|&node| (node, 1.0)));
         for _ in 0..ROUNDS {
             job.check()?;
@@ -48,13 +48,12 @@ impl Search<'_> {
                 let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
                     continue;
                 };
-                if self.ring_likeness(model, node as usize, &ring) < ON_LATTICE.contrast {
+                let is_on_plane = ring.on_plane >= ON_PLANE || self.is_on_face(node as usize);
+                if !is_on_plane || self.ring_likeness(model, node as usize, &ring) < ON_LATTICE.contrast {
                     continue;
                 }
                 similar.doubtful.retain(|other| *other != node);
-                let is_on_plane = ring.on_plane >= ON_PLANE || self.is_on_face(node as usize);
-                let lamps = if is_on_plane { &mut similar.found } else { &mut similar.beyond };
-                lamps.push(node);
+                similar.found.push(node);
                 chosen.choose(node);
                 filled.push(site);
             }

@@ -540,7 +540,7 @@ impl Search<'_> {
     }
 
     /// Whether a large part of a node's contour is soft ([`MAX_SOFT`]), as the contour of light on a wall is.
-    fn is_soft(&self, model: &LampLimits, node: u32) -> bool {
+    pub fn is_soft(&self, model: &LampLimits, node: u32) -> bool {
         let median = model.contour / CONTOUR * sharpness(self.regions.area[node as usize]);
         regions::soft_share(node, self.tree, self.photo, SOFT * median) > MAX_SOFT
     }
