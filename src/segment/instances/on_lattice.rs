@@ -1,5 +1,4 @@
-//! Finds further lamps on the lattice of the lamps found so far. Where the lattice predicts a lamp, a region needs less
-//! contrast, and may lie off the mask of the plane: glow makes holes in this mask.
+//! Finds further lamps on the lattice of the lamps found so far: where it predicts a lamp, a region needs less contrast.
 
 use super::similar::{LampLimits, Limits, ON_PLANE, Search, Similar};
 use super::surroundings;
