@@ -1,4 +1,4 @@
-//! Finds further lamps on the lattice of the lamps found so far: where it predicts a lamp, a region needs less contrast.
+//! Finds further lamps on the lattice of the lamps found so far: where it predicts one, a region needs less contrast.
 
 use super::similar::{LampLimits, Limits, ON_PLANE, Search, Similar};
 use super::surroundings;
