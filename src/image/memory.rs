@@ -1,8 +1,8 @@
 //! Upper bounds of the memory that third-party codecs need. These codecs abort the process if an allocation fails. The
 //! memory is therefore checked before they run, and charged to the caller's memory budget ([`super::working_memory`]).
 //!
-//! The bounds follow the allocations of the crates `png`, `zune-jpeg`, `image-webp`, `gif` and `weezl`; `exr_memory`
-//! has those of `exr`. They do not include the buffers that this library passes to these crates.
+//! The bounds follow the allocations of the crates `png`, `zune-jpeg`, `image-webp`, `gif` and `weezl`. They do not
+//! include the buffers that this library passes to these crates. The bounds of the crate `exr` are in `exr_memory`.
 
 use super::containers::riff_chunks;
 use super::{MAX_SIDE, no_memory};

@@ -30,7 +30,7 @@ pub struct Axes {
     cost: f64,
 }
 
-/// What is known of the camera before its axes are chosen.
+/// The principal point, the given or expected focal length, and the size of the image, all in pixels.
 pub struct Prior {
     pub principal: DVec2,
     pub given: Option<f64>,

@@ -1,7 +1,6 @@
 //! Finds further lamps on the lattice of the lamps found so far: where it predicts one, a region needs less contrast.
 
-use super::similar::{LampLimits, Limits, ON_PLANE, Search, Similar};
-use super::surroundings;
+use super::similar::{LampLimits, Limits, Search, Similar};
 use super::tree::Disjoint;
 use crate::error::Result;
 use crate::geometry::lattice::{SeenLattice, Spot};
@@ -44,11 +43,7 @@ impl Search<'_> {
                 let Some(site) = sites.site_of(self, node).filter(|site| is_free && !filled.contains(site)) else {
                     continue;
                 };
-                let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
-                    continue;
-                };
-                let is_on_plane = ring.on_plane >= ON_PLANE || self.is_on_face(node as usize);
-                if !is_on_plane || self.ring_likeness(model, node as usize, &ring) < ON_LATTICE.contrast {
+                if !self.stands_out(model, node, ON_LATTICE, taken)? {
                     continue;
                 }
                 similar.doubtful.retain(|other| *other != node);

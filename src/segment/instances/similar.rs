@@ -64,7 +64,7 @@ const MAX_BREADTH_RATIO: f64 = 1.5;
 const MIN_CUT_AREA: f64 = 0.06;
 /// A region lies on the plane if at least this share of the ring of pixels around it lies on the plane.
 /// [judged on 28 photos]
-pub const ON_PLANE: f64 = 0.5;
+const ON_PLANE: f64 = 0.5;
 /// A region in a hole of the plane's mask must have at least this share of its pixels on the face of the room that
 /// holds the lamps. [bench photos:tune]
 const ON_FACE: f64 = 0.9;
@@ -374,12 +374,17 @@ impl Search<'_> {
         if !self.resembles_known_lamp(painted.iter().chain(&similar.found), node as usize) {
             return Ok(false);
         }
+        self.stands_out(model, node, ALIKE, taken)
+    }
+
+    /// Whether a node lies on the plane or in a hole of the plane's mask, and has the contrast to its ring that the
+    /// limits demand.
+    pub fn stands_out(&self, model: &LampLimits, node: u32, limits: Limits, taken: &[bool]) -> Result<bool> {
         let Some(ring) = surroundings::around(node, self.tree, self.photo, self.plane, taken)? else {
             return Ok(false);
         };
-        let is_in_hole = || self.is_on_face(node as usize);
-        let has_contrast = self.ring_likeness(model, node as usize, &ring) >= ALIKE.contrast;
-        Ok(has_contrast && (ring.on_plane >= ON_PLANE || is_in_hole()))
+        let has_contrast = self.ring_likeness(model, node as usize, &ring) >= limits.contrast;
+        Ok(has_contrast && (ring.on_plane >= ON_PLANE || self.is_on_face(node as usize)))
     }
 
     /// Returns the nodes of the component tree that may be lamps, each with its likeness to the lamps under the
@@ -535,7 +540,7 @@ impl Search<'_> {
     }
 
     /// Contrast of a node to its ring, relative to the minimum for a lamp of its size.
-    pub fn ring_likeness(&self, model: &LampLimits, node: usize, ring: &Surroundings) -> f64 {
+    fn ring_likeness(&self, model: &LampLimits, node: usize, ring: &Surroundings) -> f64 {
         ring.contrast / (model.ring * sharpness(self.regions.area[node]))
     }
 
@@ -546,7 +551,7 @@ impl Search<'_> {
     }
 
     /// Whether at least [`ON_FACE`] of a node's pixels show the face of the room that holds the lamps.
-    pub fn is_on_face(&self, node: usize) -> bool {
+    fn is_on_face(&self, node: usize) -> bool {
         let surface = self.regions.surface.as_ref();
         surface.is_some_and(|surface| surface.on_face[node] >= ON_FACE * self.regions.area[node])
     }

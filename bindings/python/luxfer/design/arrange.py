@@ -283,7 +283,7 @@ def _best(task: _Task, candidates: Sequence[Candidate]) -> Arrangement:
     met: list[tuple[float, Candidate]] = []
     missed: list[tuple[float, Candidate]] = []
     solved = 0
-    # Distances that each candidate can reach at best, and whether they are those of the best dimmers.
+    # For each candidate: a lower bound of its distance, whether this is the distance with the best dimmers, its number.
     queue = [(c.bound, False, number) for number, c in enumerate(candidates)]
     heapq.heapify(queue)
     while queue and solved < task.search.tries:
