@@ -13,6 +13,7 @@ mod dilation;
 #[cfg(feature = "exr")]
 mod exr_memory;
 pub mod file_colour;
+mod file_header;
 mod files;
 mod format;
 mod inks;

@@ -6,6 +6,7 @@
 //! of 32-bit integers, `number.K.high` and `number.K.low`, because floating-point channels have at most 32 bits.
 //! Further information is stored as text attributes of the header.
 
+pub use super::file_header::FileHeader;
 use super::io::check_regular;
 use super::openexr::{broken, first_layer, headers};
 use super::{Image, exr_memory, try_vec, try_with_capacity};
@@ -16,26 +17,7 @@ use std::fs::File;
 use std::io::{BufReader, Cursor};
 use std::path::Path;
 
-/// The header of a file that stores `f64` values per pixel.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FileHeader {
-    /// Width and height of the whole picture, in pixels.
-    pub whole: [usize; 2],
-    /// Column and row of the window's top-left pixel in the whole picture.
-    pub corner: [usize; 2],
-    /// Width and height of the window, in pixels.
-    pub size: [usize; 2],
-    /// Number of `f64` values per pixel.
-    pub numbers: usize,
-    /// The text attributes: name and text of each.
-    pub attributes: Vec<(String, String)>,
-}
-
 impl FileHeader {
-    pub fn attribute(&self, name: &str) -> Option<&str> {
-        self.attributes.iter().find(|(n, _)| n == name).map(|(_, text)| text.as_str())
-    }
-
     fn of(headers: &[Header]) -> Result<Self> {
         let [header] = headers else {
             return Err(Error::format(format!("it has {} layers in place of one", headers.len())));
