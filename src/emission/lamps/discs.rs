@@ -19,6 +19,10 @@ const MIN_COS_ALONG: f64 = 0.9;
 /// elongated along their own blur, but not in a common direction, are discs, whatever their size. [judged on 20 photos]
 const MIN_COMMON_DIRECTION: f64 = 0.93;
 
+/// Round lamps whose length is at most this many times their width are discs, whatever elongates them. Lamps are rarely
+/// slightly oval. [convention]
+const MAX_NEARLY_ROUND: f64 = 1.25;
+
 /// Whether blur may have elongated a lamp: both the lamp and a photo pixel are elongated in the unwarped photo
 /// ([`MIN_SMEAR`]), and the cosine of the angle between their long axes exceeds `min_cos`.
 fn is_smeared(lamp: &Member, min_cos: f64) -> bool {
@@ -102,12 +106,13 @@ fn double_angle(lamp: &Member) -> DVec2 {
 }
 
 /// Decides whether lamps are discs. Returns their diameter without bloom, in unwarped pixels; `None` if they are not
-/// discs. `are_round` states that an ellipse fits the lamps better than a rectangle.
+/// discs. `aspect` is the aspect ratio of the ellipse that fits them, if an ellipse fits better than a rectangle.
 ///
 /// In the unwarped photo, bloom elongates a disc along the direction in which unwarping magnifies more. At least
 /// [`MIN_BLOOM_LAMPS`] round lamps are discs if bloom explains their long and short sides ([`BloomFit::shown`]).
-/// Otherwise, lamps are discs if the lamps that are elongated along their blur have at least half of the photo pixels
-/// of all lamps, and if one of these conditions holds as well:
+/// Round lamps that are hardly longer than wide ([`MAX_NEARLY_ROUND`]) are discs too. Otherwise, lamps are discs if the
+/// lamps that are elongated along their blur have at least half of the photo pixels of all lamps, and if one of these
+/// conditions holds as well:
 ///
 /// - They are round. Lamps are rarely oval, but a disc looks oval if it blooms, or if its cover protrudes from the
 ///   ceiling.
@@ -115,7 +120,9 @@ fn double_angle(lamp: &Member) -> DVec2 {
 /// - They are not all elongated in one common direction.
 ///
 /// The diameter of these lamps follows from their short sides if bloom does not explain the sides.
-pub fn disc(members: &[&Member], are_round: bool) -> Option<f64> {
+pub fn disc(members: &[&Member], aspect: Option<f64>) -> Option<f64> {
+    let are_round = aspect.is_some();
+    let are_nearly_discs = aspect.is_some_and(|aspect| aspect <= MAX_NEARLY_ROUND);
     let are_enough = members.len() >= MIN_BLOOM_LAMPS;
     let sides = |lamp: &&Member| [width(lamp), length(lamp)];
     let shown = are_enough.then(|| BloomFit::new(members.iter().flat_map(sides)).shown()).flatten();
@@ -127,7 +134,7 @@ pub fn disc(members: &[&Member], are_round: bool) -> Option<f64> {
     let smeared: f64 = members.iter().filter(|m| is_smeared(m, MIN_COS_ALONG)).map(|m| m.weight).sum();
     let common_turn = members.iter().map(|m| double_angle(m) * m.weight).sum::<DVec2>().length() / total;
     let are_unlike_ovals = are_round || mean_area <= MAX_SMEARED || common_turn <= MIN_COMMON_DIRECTION;
-    if smeared < 0.5 * total || !are_unlike_ovals {
+    if !are_nearly_discs && (smeared < 0.5 * total || !are_unlike_ovals) {
         return None;
     }
     shown.or_else(|| diameter(members))
@@ -183,10 +190,13 @@ mod tests {
         let design = fit(&lamps).unwrap();
         assert_eq!(design.shape, Shape::Ellipse);
         assert!((design.size - DIAMETER).abs().max_element() < 0.5, "{}", design.size);
-        // Ellipses that are elongated across the direction of their blur are not discs.
-        let turned: Vec<Member> = lamps.into_iter().map(with_blur_across).collect();
-        let design = fit(&turned).unwrap();
-        assert!(design.size.y > 1.15 * design.size.x, "{}", design.size);
+        // Ellipses that are elongated across the direction of their blur are not discs, unless they are nearly round.
+        let turned = |pixels: [f64; 4]| {
+            let lamps = pixels.into_iter().enumerate().map(|(k, p)| with_blur_across(bloomed_disc(k, p)));
+            fit(&lamps.collect::<Vec<_>>()).unwrap().size
+        };
+        let [long, round] = [turned([2.2, 2.5, 2.9, 3.4]), turned([1.2, 1.3, 1.4, 1.5])];
+        assert!(long.y > MAX_NEARLY_ROUND * long.x && round.x == round.y, "{long} {round}");
     }
 
     #[test]
