@@ -8,15 +8,16 @@ use super::lamps::designs::Designs;
 use super::lattice::law::Law;
 use super::params::{Input, Params};
 use crate::error::Result;
+use crate::geometry::robust::weighted_median;
 use crate::job::Job;
 use glam::DVec2;
 
 /// Measurements of an exemplar, in unwarped pixels.
 pub struct Measurements {
-    /// Medians of the longer side and of the shorter side over the whole lamps: lamps that the exemplar shows
-    /// completely, and lamps that count as whole. 0 without a whole lamp.
+    /// Medians of the longer side and of the shorter side over the whole lamps, weighted by their photo pixels. Whole
+    /// lamps are lamps that the exemplar shows completely, and lamps that count as whole. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
-    /// Median, over the whole lamps, of the share of its bounding box that a lamp covers: 1 for rectangles along the
+    /// Median, over the whole lamps and weighted likewise, of the share of its bounding box that a lamp covers: 1 for rectangles along the
     /// axes, π/4 for discs. 0 without a whole lamp.
     pub lamp_fill: f64,
     /// The shorter period of the lamps' lattice. Without a lattice, the median distance from a whole lamp to the
@@ -50,18 +51,17 @@ pub fn measure(input: &Input, params: &Params, job: Job) -> Result<Measurements>
         false => Designs::default(),
     };
     let whole = exemplar.components.list.iter().enumerate().filter(|(k, _)| exemplar.roles[*k].is_whole());
-    let size = |(k, lamp): (usize, &Component)| match designs.of(k) {
+    let size = |k: usize, lamp: &Component| match designs.of(k) {
         Some((design, _)) => (2.0 * design.half_box(), design.area()),
         None => (DVec2::new(lamp.size()[0] as f64, lamp.size()[1] as f64), lamp.area as f64),
     };
-    let sizes: Vec<(DVec2, f64)> = whole.map(size).collect();
-    let median = |of: fn(&(DVec2, f64)) -> f64| {
-        let mut values: Vec<f64> = sizes.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied().unwrap_or(0.0)
+    let sizes: Vec<((DVec2, f64), f64)> = whole.map(|(k, lamp)| (size(k, lamp), exemplar.photo_area[k])).collect();
+    let median = |of: fn(DVec2, f64) -> f64| {
+        let values = sizes.iter().map(|&((size, area), weight)| (of(size, area), weight));
+        weighted_median(values.collect()).unwrap_or(0.0)
     };
-    let lamp_sides = [median(|(size, _)| size.max_element()), median(|(size, _)| size.min_element())];
-    let lamp_fill = median(|(size, area)| area / size.element_product());
+    let lamp_sides = [median(|size, _| size.max_element()), median(|size, _| size.min_element())];
+    let lamp_fill = median(|size, area| area / size.element_product());
     let columns = (0..exemplar.width).filter(|&x| (0..exemplar.height).any(|y| exemplar.shown[y * exemplar.width + x]));
     Ok(Measurements { lamp_sides, lamp_fill, spacing, width: columns.count() as f64, analysis })
 }

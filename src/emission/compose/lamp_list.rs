@@ -14,7 +14,6 @@ use super::{patch_lights, source};
 use crate::emission::lamps::instance::Instance;
 use crate::emission::lamps::luminaire::Luminaire;
 use crate::emission::lamps::{kinds, luminaires};
-use crate::emission::lattice::law::Law;
 use crate::emission::params::Input;
 use crate::error::Result;
 use crate::geometry::polygon;
@@ -59,8 +58,8 @@ impl LampList {
         }
         for (k, layer) in composition.layers.iter().enumerate() {
             job.check()?;
-            // If the texture is a copied part of the exemplar, all components of the exemplar are moved by one shift.
-            let copied = layer.patch_map.shifts.first().filter(|_| layer.law == Law::Copy);
+            // If the texture is a plain copy of a part of the exemplar, all components are moved by one shift.
+            let copied = layer.patch_map.shifts.first().filter(|_| layer.is_plain_copy());
             let copies = copied.map(|shift| {
                 let instance = |component| Instance { component, shift: shift.exact };
                 (0..layer.exemplar.components.list.len()).map(instance).collect::<Vec<_>>()
@@ -124,11 +123,11 @@ impl LampList {
         let shift = layer.rounded(instance.shift);
         let size = DVec2::new(composition.width as f64, composition.height as f64);
         let whole = shape.moved(shift, 1.0 / layer.scale);
-        // If the texture is a copied part of the exemplar, the exemplar's weight in the blend dims the lights.
+        // If the texture is a plain copy of a part of the exemplar, the exemplar's weight in the blend dims the lights.
         // Otherwise a lamp is shown at full brightness or not at all.
-        let whole = match layer.law {
-            Law::Copy => Luminaire { colour: whole.colour * composition.weights.at(k, whole.centre / size), ..whole },
-            _ => whole,
+        let whole = match layer.is_plain_copy() {
+            true => Luminaire { colour: whole.colour * composition.weights.at(k, whole.centre / size), ..whole },
+            false => whole,
         };
         if whole.outline.iter().all(|p| p.cmpge(DVec2::ZERO).all() && p.cmple(size).all()) {
             return whole;

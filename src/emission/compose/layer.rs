@@ -7,6 +7,7 @@ use crate::emission::agreement::statistics::Statistics;
 use crate::emission::analysis::sites::Sites;
 use crate::emission::analysis::{Analysis, Choice};
 use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::measured_lamp::MeasuredLamp;
 use crate::emission::exemplar::roles::Role;
 use crate::emission::lamps::designs::Designs;
 use crate::emission::lamps::instance::Instance;
@@ -90,7 +91,8 @@ struct PatternPlacement<'a> {
 
 impl Layer {
     pub fn new(analysis: Option<Analysis>, input: &Input, params: &Params, job: Job) -> Result<Self> {
-        let (window, LayerExemplar { exemplar, found, regularity, choice }) = source(analysis, input, params, job)?;
+        let (window, source) = source(analysis, input, params, job)?;
+        let LayerExemplar { exemplar, found, regularity, choice, is_ragged } = source;
         let inside = window.as_ref().filter(|w| w.is_shown).map(|w| w.corner);
         let placement = PatternPlacement::new(&exemplar, found, window, params)?;
 
@@ -104,15 +106,17 @@ impl Layer {
             Some(corner) => window::copy(corner, placement.canvas, working.pitch),
             None => placement.place_patches(&exemplar, &metadata, job.part(0.3, 0.9))?,
         };
-        let has_pieces = inside.is_none() && params.whole_lamps;
-        let by_patches = !has_pieces || exemplar.roles.contains(&Role::Through);
-        let designs = match has_pieces && params.clean_lamps && input.photo.is_some() {
+        // A copied part of the exemplar keeps its outlines, unless these are ragged and can be replaced by designs.
+        let may_have_pieces = params.whole_lamps && (inside.is_none() || is_ragged);
+        let designs = match may_have_pieces && params.clean_lamps && input.photo.is_some() {
             true => {
                 let outlines = outlines(&exemplar, input, job.part(0.9, 0.92))?;
                 cut::complete(Designs::find(&exemplar, &outlines), &exemplar)
             }
             false => Designs::default(),
         };
+        let has_pieces = may_have_pieces && (inside.is_none() || !designs.kinds.is_empty());
+        let by_patches = !has_pieces || exemplar.roles.contains(&Role::Through);
         let sites = placement.sites(&exemplar, &designs).filter(|_| has_pieces);
         let instances = match has_pieces {
             true => {
@@ -190,9 +194,14 @@ impl Layer {
         self.instances.iter().any(|instance| self.designs.of(instance.component).is_none())
     }
 
+    /// Whether the texture is a copied part of the exemplar, with the outlines of the photo.
+    pub fn is_plain_copy(&self) -> bool {
+        self.law == Law::Copy && !self.has_pieces
+    }
+
     /// Whether some lights are copied patch by patch, and the texture is not just a copied part of the exemplar.
     pub fn follows_patches(&self) -> bool {
-        self.any_copied_by_pixel() && self.law != Law::Copy
+        self.any_copied_by_pixel() && !self.is_plain_copy()
     }
 
     /// If a texel is one unwarped pixel, rounds a shift to whole pixels, so that copies are exact.
@@ -224,8 +233,8 @@ fn smaller_photos(input: &Input, exemplar: &Exemplar, scale: f64, job: Job) -> R
 }
 
 /// Minimum score of a lattice ([`Choice`]: how well it predicts the lamps, from 0 to 1) at which lamps are drawn anew,
-/// with clean outlines, in a texture that fits inside the exemplar. At a lower score, the texture is a copy of a part
-/// of the photo, ragged outlines included. [bench photos:tune]
+/// at the sites of the lattice, in a texture that fits inside the exemplar. At a lower score, the texture shows the
+/// lamps of a part of the photo. [bench photos:tune]
 const MIN_CLEAN_SCORE: f64 = 0.6;
 
 /// A light counts as a line if it is more than this many times as long as wide. [judged on 50 photos]
@@ -243,6 +252,8 @@ struct LayerExemplar {
     found: Law,
     regularity: f64,
     choice: Choice,
+    /// Whether the outlines of the lamps are ragged ([`is_ragged`]), and lamps may be drawn from designs instead.
+    is_ragged: bool,
 }
 
 /// Analyses the exemplar. If the texture fits into the exemplar, and is neither tileable nor centred, also finds the
@@ -263,21 +274,21 @@ fn source(
     let stays = params.tileable || params.centred;
     let mut window = if stays { None } else { Window::find(&exemplar, params)? };
     let is_inside = window.as_ref().is_some_and(|w| w.is_shown);
-    // If a photo pixel spans several unwarped pixels, outlines are ragged. Lamps with ragged outlines are drawn anew,
-    // provided that a lattice gives their positions.
-    let may_be_cleaned =
-        is_inside && params.clean_lamps && params.whole_lamps && input.photo.is_some() && is_ragged(&exemplar);
+    // If a photo pixel spans several unwarped pixels, outlines are ragged. Lamps with ragged outlines are drawn anew.
+    let may_be_redrawn = params.clean_lamps && params.whole_lamps && input.photo.is_some();
+    let copied_part = window.as_ref().filter(|w| w.is_shown && may_be_redrawn);
+    let is_ragged = copied_part.is_some_and(|w| is_ragged(&exemplar, w.corner, params.size()));
     let copied = || (Law::Copy, 0.0, Choice::only(Law::Copy));
     let (mut exemplar, (mut found, mut regularity, mut choice)) = match read {
         Some(read) => (exemplar, read),
-        None if is_inside && !may_be_cleaned => (exemplar, copied()),
+        None if is_inside && !is_ragged => (exemplar, copied()),
         None => {
             let analysis = Analysis::of(exemplar, input, params, job.part(0.15, 0.25))?;
             (analysis.exemplar, (analysis.law, analysis.regularity, analysis.choice))
         }
     };
     if let Some(window) = window.as_mut().filter(|w| w.is_shown) {
-        if may_be_cleaned && matches!(found, Law::Lattice(_)) && choice.score >= MIN_CLEAN_SCORE {
+        if is_ragged && matches!(found, Law::Lattice(_)) && choice.score >= MIN_CLEAN_SCORE {
             window.is_shown = false;
         } else {
             (found, regularity, choice) = copied();
@@ -287,7 +298,7 @@ fn source(
     if let Law::Lattice(basis) = found {
         border_sites::exclude(&mut exemplar, basis)?;
     }
-    Ok((window, LayerExemplar { exemplar, found, regularity, choice }))
+    Ok((window, LayerExemplar { exemplar, found, regularity, choice, is_ragged }))
 }
 
 /// Gives pieces of a line of light the role `Through` (running through the exemplar). A basis vector of at most
@@ -305,12 +316,17 @@ fn continue_lines(exemplar: &mut Exemplar, law: Law) {
     }
 }
 
-/// Whether outlines are ragged: at the lamps that the photo shows completely, the median length of a photo pixel is at
-/// least [`MIN_RAGGED_PIXEL`] unwarped pixels. The median is weighted by the photo pixels of the lamps.
-fn is_ragged(exemplar: &Exemplar) -> bool {
+/// Whether outlines are ragged in a part of the exemplar, given by its upper left corner and its size: at the whole lamps
+/// that lie at least partly in it, the median length of a photo pixel is at least [`MIN_RAGGED_PIXEL`] unwarped pixels.
+/// The median is weighted by the photo pixels of the lamps.
+fn is_ragged(exemplar: &Exemplar, corner: DVec2, size: DVec2) -> bool {
     let lamps = exemplar.measured_lamps(Role::is_whole);
-    weighted_median(lamps.iter().map(|lamp| (lamp.blur.max_element(), lamp.weight)).collect())
-        .is_some_and(|pixel| pixel >= MIN_RAGGED_PIXEL)
+    let is_within = |lamp: &&MeasuredLamp| {
+        let off = (lamp.centre - corner - size / 2.0).abs();
+        off.cmplt((size + lamp.size) / 2.0).all()
+    };
+    let pixels = lamps.iter().filter(is_within).map(|lamp| (lamp.blur.max_element(), lamp.weight));
+    weighted_median(pixels.collect()).is_some_and(|pixel| pixel >= MIN_RAGGED_PIXEL)
 }
 
 impl<'a> PatternPlacement<'a> {
@@ -405,6 +421,7 @@ impl<'a> PatternPlacement<'a> {
         let instances = match law {
             Law::Lattice(_) | Law::Row(_) if stretched.is_some() => stretched.unwrap_or_default(),
             Law::Whole(basis) => instances::repeat(exemplar, basis, offset, params.size(), params.tileable),
+            Law::Copy => instances::copy(exemplar, offset, params.size(), params.seed),
             _ => {
                 let shown = instances::resolve(exemplar, patch_map, rules, params.seed, job)?;
                 let area = (offset, params.size());
@@ -415,8 +432,8 @@ impl<'a> PatternPlacement<'a> {
             }
         };
         let mut instances = match law {
-            Law::Whole(_) => instances,
-            _ => spacing::keep_apart(exemplar, designs, instances),
+            Law::Whole(_) | Law::Copy => instances,
+            _ => spacing::keep_apart(exemplar, designs, law, instances),
         };
         sharpest::show_designed(exemplar, designs, &mut instances, params.seed);
         match law {

@@ -6,18 +6,24 @@ use crate::emission::quilt::patch_map::{PatchMap, Shift};
 use crate::error::Result;
 use glam::DVec2;
 
+/// Parts of the exemplar count as equally bright if their lit shares differ from the lit share of the exemplar by at
+/// most this much more than the lit share of the best part does, relative to the lit share of the exemplar.
+/// [convention: a tenth]
+const MAX_LIT_DIFFERENCE: f64 = 0.1;
+
 /// A part of the exemplar with the size of the texture, given by its upper left corner in unwarped pixels.
 pub struct Window {
     pub corner: DVec2,
-    /// Whether the texture copies this part. False if the photo does not show every pixel of the part, or if its lamps
-    /// are drawn anew with clean outlines. `corner` then only gives the position of the lattice.
+    /// Whether the texture copies this part. False if the photo does not show every pixel of the part, or if a lattice
+    /// gives the positions of the lamps. `corner` then only gives the position of the lattice.
     pub is_shown: bool,
 }
 
 impl Window {
     /// Finds the part of the exemplar to copy. Candidates are all parts with the size of the texture that the photo
-    /// shows completely. The part is chosen whose lit share is closest to the lit share of the exemplar. It is then
-    /// moved by the negative of `params.offset`. `None` if the photo shows no part of this size completely.
+    /// shows completely. Of the parts whose lit share is closest to the lit share of the exemplar
+    /// ([`MAX_LIT_DIFFERENCE`]), the part is chosen that unwarping magnifies least at its centre. It is then moved by
+    /// the negative of `params.offset`. `None` if the photo shows no part of this size completely.
     pub fn find(exemplar: &Exemplar, params: &Params) -> Result<Option<Self>> {
         let side = |n: usize| (n as f64 * params.scale - 1e-9).ceil().max(1.0);
         let (w, h) = (side(params.width), side(params.height));
@@ -28,17 +34,17 @@ impl Window {
         let shown = AreaSums::new(|i| exemplar.shown[i], exemplar.width, exemplar.height)?;
         let lit = AreaSums::new(|i| exemplar.components.labels[i] != 0, exemplar.width, exemplar.height)?;
         let target = exemplar.lit_share * (w * h) as f64;
-        let mut best: Option<(f64, DVec2)> = None;
-        for y in 0..=exemplar.height - h {
-            for x in 0..=exemplar.width - w {
-                if shown.count(x, y, w, h) == w * h {
-                    let off = (lit.count(x, y, w, h) as f64 - target).abs();
-                    if best.is_none_or(|b| off < b.0) {
-                        best = Some((off, DVec2::new(x as f64, y as f64)));
-                    }
-                }
-            }
-        }
+        let corners = || {
+            let all = (0..=exemplar.height - h).flat_map(|y| (0..=exemplar.width - w).map(move |x| (x, y)));
+            all.filter(|&(x, y)| shown.count(x, y, w, h) == w * h)
+        };
+        let difference = |(x, y): (usize, usize)| (lit.count(x, y, w, h) as f64 - target).abs();
+        let allowed = corners().map(difference).fold(f64::INFINITY, f64::min) + MAX_LIT_DIFFERENCE * target;
+        let corner = |(x, y): (usize, usize)| DVec2::new(x as f64, y as f64);
+        let half = DVec2::new(w as f64, h as f64) / 2.0;
+        let candidates = corners().map(|at| (at, difference(at))).filter(|(_, off)| *off <= allowed);
+        let rated = candidates.map(|(at, off)| ([exemplar.magnification(corner(at) + half), off], corner(at)));
+        let best = rated.min_by(|(p, _), (q, _)| p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1])));
         Ok(best.map(|(_, best)| {
             let corner = best - (params.offset * params.scale).round();
             let inside = corner.cmpge(DVec2::ZERO).all()

@@ -47,8 +47,7 @@ impl LocalMap {
 #[derive(Clone, Copy, Debug)]
 pub struct MagnificationLimit {
     homography: Homography,
-    /// Largest allowed value of |w|, where w is the third homogeneous coordinate of a point that the homography has
-    /// mapped. The magnification of lengths is proportional to |w|^(3/2).
+    /// Largest allowed value of [`denominator`].
     max_denominator: f64,
 }
 
@@ -79,6 +78,8 @@ fn pixel_centre(i: usize, width: usize) -> DVec2 {
     DVec2::new((i % width) as f64, (i / width) as f64) + 0.5
 }
 
-fn denominator(homography: &Homography, at: DVec2) -> f64 {
+/// |w| of a point that the homography has mapped, where w is the third homogeneous coordinate. The magnification of
+/// lengths is proportional to |w|^(3/2).
+pub fn denominator(homography: &Homography, at: DVec2) -> f64 {
     (homography.0 * at.extend(1.0)).z.abs()
 }

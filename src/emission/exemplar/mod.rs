@@ -152,6 +152,12 @@ impl Exemplar {
         self.components.list.iter().enumerate().filter(|(k, _)| self.roles[*k].is_piece())
     }
 
+    /// A measure of how much unwarping magnifies the photo at a point: it increases with the magnification. 0 without a
+    /// photo.
+    pub fn magnification(&self, at: DVec2) -> f64 {
+        self.to_photo.map_or(0.0, |to_photo| foreshortening::denominator(&to_photo.homography, at))
+    }
+
     /// The part of the exemplar that unwarping magnifies at most `max_magnification` times as much as the least
     /// magnified pixel. `None` if this part is the whole exemplar, or without a photo.
     pub fn magnification_limit(&self, max_magnification: f64) -> Option<MagnificationLimit> {

@@ -10,6 +10,7 @@
 use super::instance::Instance;
 use super::sharpest;
 use crate::emission::exemplar::Exemplar;
+use crate::emission::exemplar::roles::Role;
 use crate::emission::lattice::cells;
 use crate::emission::quilt::patch_map::PatchMap;
 use crate::error::Result;
@@ -151,6 +152,19 @@ pub fn repeat(exemplar: &Exemplar, [a, b]: [DVec2; 2], offset: DVec2, size: DVec
             }
         }
     }
+    instances
+}
+
+/// Places the lamps of a part of the exemplar in a texture that shows this part, with `size` in unwarped pixels.
+/// `offset` is the shift of the part's upper left corner to the origin. Afterwards replaces each lamp that few photo
+/// pixels show by a similar lamp that many photo pixels show.
+pub fn copy(exemplar: &Exemplar, offset: DVec2, size: DVec2, seed: u64) -> Vec<Instance> {
+    let lamps = exemplar.components.list.iter().zip(&exemplar.roles).enumerate();
+    let is_within =
+        |(low, high): (DVec2, DVec2)| (high + offset).cmpgt(DVec2::ZERO).all() && (low + offset).cmplt(size).all();
+    let shown = lamps.filter(|(_, (lamp, role))| **role != Role::Through && is_within(lamp.bounds()));
+    let mut instances = shown.map(|(component, _)| Instance { component, shift: offset }).collect::<Vec<_>>();
+    sharpest::show_sharpest(exemplar, &mut instances, seed);
     instances
 }
 

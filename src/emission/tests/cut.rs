@@ -179,9 +179,15 @@ fn copies_stay_apart_as_the_lamps_of_the_photo_do() {
     // The gap between the lamps of the exemplar is 41 pixels. Copies must keep at least half of it: a gap of 21 pixels
     // is allowed, and one of 20 is not.
     let copies = [0.0, 44.0, 45.0, 90.0, 0.5].map(|x| Instance { component: 0, shift: DVec2::new(x, 0.0) });
-    let kept = spacing::keep_apart(&exemplar, &Designs::default(), copies.to_vec());
-    let shifts: Vec<f64> = kept.iter().map(|copy| copy.shift.x).collect();
-    assert_eq!(shifts, [0.0, 45.0, 90.0]);
+    let kept = |law: Law, copies: [Instance; 5]| -> Vec<f64> {
+        let kept = spacing::keep_apart(&exemplar, &Designs::default(), law, copies.to_vec());
+        kept.iter().map(|copy| copy.shift.x).collect()
+    };
+    assert_eq!(kept(Law::Free, copies), [0.0, 45.0, 90.0]);
+    // On a lattice with a period of 34 pixels, lamps are 10 pixels apart, although the photo shows no such pair.
+    let lattice = Law::Lattice([DVec2::new(34.0, 0.0), DVec2::new(0.0, 60.0)]);
+    let copies = [0.0, 34.0, 36.0, 68.0, 0.5].map(|x| Instance { component: 0, shift: DVec2::new(x, 0.0) });
+    assert_eq!(kept(lattice, copies), [0.0, 34.0, 68.0]);
 }
 
 #[test]

@@ -187,3 +187,32 @@ fn what_the_border_cuts_ends_at_the_border() {
     let list = LampList::new(&composition, &exemplar.input(), &[], job.job()).unwrap();
     assert_eq!((list.count(), list.get(&composition, 0).unwrap().outline), (1, lamp.outline.clone()));
 }
+
+#[test]
+fn a_copied_part_shows_clean_lamps_where_the_photo_is_ragged() {
+    // Two discs, too few for a lattice. A photo pixel is 4 x 4 unwarped pixels, so their outlines are staircases.
+    let centres = [[52.3, 47.1], [205.8, 131.4]];
+    let is_lit = |x: f64, y: f64| {
+        let pixel = DVec2::new((x / 4.0).floor(), (y / 4.0).floor()) * 4.0 + 2.0;
+        centres.iter().any(|c| pixel.distance(DVec2::from(*c)) < 13.0)
+    };
+    let exemplar = Design::new(264, 184, is_lit);
+    let reduced =
+        Image::from_fn(66, 46, |x, y| [f32::from(is_lit(4.0 * x as f64 + 2.0, 4.0 * y as f64 + 2.0)); 3]).unwrap();
+    let to_photo = Homography(glam::DMat3::from_scale(DVec2::splat(0.25)));
+    let input = Input { photo: Some((&reduced, to_photo.into())), ..exemplar.input() };
+    let lamps = |clean_lamps: bool| {
+        let params = Params { width: 264, height: 184, clean_lamps, ..Params::default() };
+        let result = run(&input, &params, Monitor::default().job()).unwrap();
+        assert_eq!(result.law, Law::Copy);
+        result.luminaires
+    };
+    let (clean, ragged) = (lamps(true), lamps(false));
+    assert_eq!((clean.len(), ragged.len()), (2, 2));
+    for lamp in &clean {
+        assert!((lamp.size.x / lamp.size.y - 1.0).abs() < 0.03, "{}", lamp.size);
+        assert!((lamp.area / clean[0].area - 1.0).abs() < 0.03, "{}", lamp.area);
+        assert!(centres.iter().any(|c| lamp.centre.distance(DVec2::from(*c)) < 2.0), "{}", lamp.centre);
+    }
+    assert!(ragged.iter().any(|lamp| (lamp.area / ragged[0].area - 1.0).abs() > 0.03));
+}
