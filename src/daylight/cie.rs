@@ -1,7 +1,7 @@
 //! The CIE standard general sky (ISO 15469:2004, CIE S 011:2003): 15 types of relative luminance, and the traditional
 //! overcast sky of Moon and Spencer (1942), which the standard keeps as its 16th.
 
-use super::shape::Shape;
+use super::shape::LuminanceShape;
 use crate::error::{Error, Result};
 use crate::maths;
 use std::f64::consts::FRAC_PI_2;
@@ -9,9 +9,9 @@ use std::f64::consts::FRAC_PI_2;
 /// The number of the traditional overcast sky, (1 + 2 sin(altitude)) / 3 of the zenith's luminance.
 pub const TRADITIONAL_OVERCAST: u32 = 16;
 
-/// Parameters a and b of the gradations I to VI. \[ISO 15469:2004, table 1\]
+/// Parameters a and b of the gradations I to VI. [paper: ISO 15469:2004, table 1]
 const GRADATIONS: [[f64; 2]; 6] = [[4.0, -0.7], [1.1, -0.8], [0.0, -1.0], [-1.0, -0.55], [-1.0, -0.32], [-1.0, -0.15]];
-/// Parameters c, d and e of the indicatrices 1 to 6. \[ISO 15469:2004, table 1\]
+/// Parameters c, d and e of the indicatrices 1 to 6. [paper: ISO 15469:2004, table 1]
 const INDICATRICES: [[f64; 3]; 6] =
     [[0.0, -1.0, 0.0], [2.0, -1.5, 0.15], [5.0, -2.5, 0.3], [10.0, -3.0, 0.45], [16.0, -3.0, 0.3], [24.0, -2.8, 0.15]];
 /// Gradation and indicatrix of each type, counted from 1.
@@ -35,12 +35,12 @@ const TYPES: [[usize; 2]; 15] = [
 
 /// A standard sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Standard {
-    General(Shape),
+pub enum StandardSky {
+    General(LuminanceShape),
     TraditionalOvercast,
 }
 
-impl Standard {
+impl StandardSky {
     /// Returns a sky by its number: 1 to 15, or [`TRADITIONAL_OVERCAST`].
     ///
     /// # Errors
@@ -57,7 +57,7 @@ impl Standard {
             )));
         };
         let ([a, b], [c, d, e]) = (GRADATIONS[gradation - 1], INDICATRICES[indicatrix - 1]);
-        Ok(Self::General(Shape { a, b, c, d, e, offset: maths::exp(d * FRAC_PI_2) }))
+        Ok(Self::General(LuminanceShape { a, b, c, d, e, offset: maths::exp(d * FRAC_PI_2) }))
     }
 
     /// Returns the relative luminance for the cosines of the angles from the zenith and from the sun.

@@ -18,12 +18,12 @@ pub const MAX_HOURS: usize = 8784;
 const MIN_FIELDS: usize = 20;
 
 /// Largest irradiance in W/m² and illuminance in lux; 9999 and values from 999,900 on stand for missing values.
-/// \[convention\]
+/// [convention]
 const MAX_IRRADIANCE: f64 = 2000.0;
 const MISSING_IRRADIANCE: f64 = 9999.0;
 const MAX_ILLUMINANCE: f64 = 250_000.0;
 const MISSING_ILLUMINANCE: f64 = 999_900.0;
-/// Range of the dew point in °C, and the number that stands for a missing one. \[convention\]
+/// Range of the dew point in °C, and the number that stands for a missing one. [convention]
 const DEW_POINTS: [f64; 2] = [-90.0, 70.0];
 const MISSING_DEW_POINT: f64 = 99.9;
 

@@ -19,8 +19,8 @@ mod shape;
 pub mod sky;
 pub mod sun;
 
-pub use sky::{Conditions, Model, Sky, Unit};
-pub use sun::{Moment, SunPosition};
+pub use sky::{Conditions, LightUnit, Sky, SkyModel};
+pub use sun::{PlaceAndTime, SunPosition};
 
 #[cfg(test)]
 mod tests;

@@ -6,26 +6,26 @@
 //! Both depend on the clearness ε and the brightness Δ of the sky, which follow from the direct normal irradiance, the
 //! diffuse horizontal irradiance and the sun's altitude. ε selects one of eight bins of coefficients.
 
-use super::shape::Shape;
+use super::shape::LuminanceShape;
 use super::sun::SunPosition;
 use crate::maths;
 use std::f64::consts::FRAC_PI_2;
 
-/// Solar irradiance at one astronomical unit in W/m², as in the papers. \[convention\]
+/// Solar irradiance at one astronomical unit in W/m², as in the papers. [convention]
 const SOLAR_CONSTANT: f64 = 1367.0;
-/// Factor of Z³ in ε, with the sun's zenith angle Z in radians. \[Perez et al. 1990, equation 1\]
+/// Factor of Z³ in ε, with the sun's zenith angle Z in radians. [paper: Perez et al. 1990, equation 1]
 const CLEARNESS_FACTOR: f64 = 1.041;
-/// Upper bounds of all bins of ε but the last. \[Perez et al. 1990, table 1\]
+/// Upper bounds of all bins of ε but the last. [paper: Perez et al. 1990, table 1]
 const BINS: [f64; 7] = [1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2];
 /// Range of ε and of Δ, to which skies outside the models' data are limited, as in Radiance's gendaylit; between a
-/// largest ε of 8 and 20, the last bin is the same. \[convention\]
+/// largest ε of 8 and 20, the last bin is the same. [convention]
 const CLEARNESS: [f64; 2] = [1.0, 12.0];
 const BRIGHTNESS: [f64; 2] = [0.01, 0.6];
 /// Smallest Δ in the luminance of skies of the bins 2 to 5, as in Radiance's gendaylit: with smaller values, parts of
-/// these skies would be negative. \[convention\]
+/// these skies would be negative. [convention]
 const INTERMEDIATE_BRIGHTNESS: f64 = 0.2;
 
-/// For each bin, the coefficients a1 to a4, b1 to b4, and so on up to e4. \[Perez et al. 1993, table 1\]
+/// For each bin, the coefficients a1 to a4, b1 to b4, and so on up to e4. [paper: Perez et al. 1993, table 1]
 const LUMINANCE: [[[f64; 4]; 5]; 8] = [
     [
         [1.3525, -0.2576, -0.2690, -1.4366],
@@ -84,7 +84,7 @@ const LUMINANCE: [[[f64; 4]; 5]; 8] = [
         [1.5000, -0.6426, 1.8564, 0.5636],
     ],
 ];
-/// For each bin, the coefficients of the efficacy of diffuse light. \[Perez et al. 1990, table 4\]
+/// For each bin, the coefficients of the efficacy of diffuse light. [paper: Perez et al. 1990, table 4]
 const DIFFUSE_EFFICACY: [[f64; 4]; 8] = [
     [97.24, -0.46, 12.00, -8.91],
     [107.22, 1.15, 0.59, -3.95],
@@ -95,7 +95,7 @@ const DIFFUSE_EFFICACY: [[f64; 4]; 8] = [
     [141.88, 1.90, -53.24, -14.03],
     [152.23, 0.35, -45.27, -7.98],
 ];
-/// For each bin, the coefficients of the efficacy of direct light. \[Perez et al. 1990, table 4\]
+/// For each bin, the coefficients of the efficacy of direct light. [paper: Perez et al. 1990, table 4]
 const DIRECT_EFFICACY: [[f64; 4]; 8] = [
     [57.20, -4.55, -2.98, 117.12],
     [98.99, -3.46, -1.21, 12.38],
@@ -152,18 +152,21 @@ impl SkyState {
     }
 
     /// Returns the relative luminance of the sky (equations 1 to 4 and tables 1 and 2 of the paper of 1993).
-    pub fn shape(&self) -> Shape {
+    pub fn shape(&self) -> LuminanceShape {
         let (bin, z) = (self.bin(), self.zenith_angle);
         let delta = if (1..5).contains(&bin) { self.brightness.max(INTERMEDIATE_BRIGHTNESS) } else { self.brightness };
         let rows = LUMINANCE[bin];
         let [a, b, c, d, e] = rows.map(|[p, q, r, s]| p + q * z + delta * (r + s * z));
-        // A positive b would make the horizon infinitely bright.
-        let shape = Shape { a, b: b.min(0.0), c, d, e, offset: 0.0 };
+        // Outside the models' data, b may be positive, which would make the horizon infinitely bright. As b approaches 0,
+        // the gradation becomes constant: leave it out. The smallest a for which no part of the sky is negative is
+        // -exp(-b), because exp(b / cos ζ) is largest at the zenith.
+        let [a, b] = if b < 0.0 { [a.max(-maths::exp(-b)), b] } else { [0.0, 0.0] };
+        let shape = LuminanceShape { a, b, c, d, e, offset: 0.0 };
         if bin > 0 {
             return shape;
         }
         let [[c1, c2, c3, c4], [d1, d2, d3, d4]] = [rows[2], rows[3]];
-        Shape {
+        LuminanceShape {
             c: maths::exp(maths::powf(delta * (c1 + c2 * z), c3)) - c4,
             d: -maths::exp(delta * (d1 + d2 * z)) + d3 + delta * d4,
             ..shape
@@ -171,7 +174,7 @@ impl SkyState {
     }
 }
 
-/// Returns the precipitable water in cm from the dew point in °C at the ground. \[Perez et al. 1990, equation 3\]
+/// Returns the precipitable water in cm from the dew point in °C at the ground. [paper: Perez et al. 1990, equation 3]
 pub fn precipitable_water(dew_point: f64) -> f64 {
     maths::exp(0.07 * dew_point - 0.075)
 }

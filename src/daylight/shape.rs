@@ -12,7 +12,7 @@ const MIN_COSINE: f64 = 0.01;
 /// the zenith and χ the angle from the sun in radians. In the formula of Perez et al., the second exponential is
 /// missing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shape {
+pub struct LuminanceShape {
     pub a: f64,
     pub b: f64,
     pub c: f64,
@@ -22,7 +22,7 @@ pub struct Shape {
     pub offset: f64,
 }
 
-impl Shape {
+impl LuminanceShape {
     /// Returns the relative luminance, at least 0, for the cosines of ζ and χ.
     pub fn luminance(&self, cos_zenith: f64, cos_sun: f64) -> f64 {
         self.gradation(cos_zenith) * self.indicatrix(cos_sun)

@@ -1,9 +1,9 @@
 //! Scales a sky model to the wanted illuminance and draws it as an environment image, with the ground below the horizon
 //! and the sun as a disc.
 
-use super::cie::Standard;
+use super::cie::StandardSky;
 use super::perez::{self, SkyState};
-use super::shape::Shape;
+use super::shape::LuminanceShape;
 use super::sun::SunPosition;
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::image::{Image, try_with_capacity};
@@ -12,29 +12,29 @@ use crate::photometry::temperature::{self, MAX_KELVIN, MIN_KELVIN};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Half of the angle of the sun's disc at one astronomical unit: 0.2665° in radians. \[convention\]
+/// Half of the angle of the sun's disc at one astronomical unit: 0.2665° in radians. [convention]
 const SUN_HALF_ANGLE: f64 = 0.2665 * PI / 180.0;
 /// Largest irradiance in W/m² and illuminance in lux of sky or sun. Outside the atmosphere, the sun has at most
-/// 1415 W/m² and 140,000 lx; ten times as much is surely a mistake in the unit. \[convention\]
+/// 1415 W/m² and 140,000 lx; values beyond these limits are mistakes, for example in the unit. [convention]
 const MAX_IRRADIANCE: f64 = 2000.0;
 const MAX_ILLUMINANCE: f64 = 1e6;
-/// Largest luminance of the zenith in cd/m². \[convention\]
+/// Largest luminance of the zenith in cd/m². [convention]
 const MAX_LUMINANCE: f64 = 1e6;
-/// Range of the distance to the sun in astronomical units; the Earth's lies between 0.983 and 1.017. \[convention\]
+/// Range of the distance to the sun in astronomical units; the Earth's lies between 0.983 and 1.017. [convention]
 const DISTANCES: [f64; 2] = [0.9, 1.1];
-/// Range of dew points in °C. \[convention\]
+/// Range of dew points in °C. [convention]
 const DEW_POINTS: [f64; 2] = [-90.0, 60.0];
 /// Range of the number of rows of the image.
-pub const ROWS: [u32; 2] = [16, 4096];
+const ROWS: [u32; 2] = [16, 4096];
 
 /// Number of iterations that find the irradiances of which the efficacies make given illuminances. Where these settle
-/// at all, they are then constant to rounding; elsewhere they alternate between two bins. \[convention\]
+/// at all, they are then constant to rounding; elsewhere they alternate between two bins. [convention]
 const ITERATIONS: usize = 32;
 
 /// The model of the sky's relative luminance.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Model {
-    /// A standard sky by its number ([`Standard::new`]).
+pub enum SkyModel {
+    /// A standard sky by its number ([`StandardSky::new`]).
     Cie(u32),
     /// The all-weather sky of Perez et al.
     Perez,
@@ -42,7 +42,7 @@ pub enum Model {
 
 /// The unit of the direct normal and the diffuse horizontal light.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Unit {
+pub enum LightUnit {
     /// Illuminance in lux.
     Lux,
     /// Irradiance in W/m², which the efficacies of Perez et al. (1990) convert.
@@ -52,9 +52,9 @@ pub enum Unit {
 /// A state of sun and sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conditions {
-    pub model: Model,
+    pub model: SkyModel,
     pub sun: SunPosition,
-    pub unit: Unit,
+    pub unit: LightUnit,
     /// Light of the sun on a plane that faces it. It counts only if the sun is above the horizon.
     pub direct_normal: f64,
     /// Light of the sky on a level plane, without the sun.
@@ -75,9 +75,9 @@ impl Default for Conditions {
     /// The overcast sky of type 1 with 10,000 lx, of which 100 lx indoors are a daylight factor of 1 %.
     fn default() -> Self {
         Self {
-            model: Model::Cie(1),
+            model: SkyModel::Cie(1),
             sun: SunPosition { altitude: PI / 4.0, azimuth: PI, distance: 1.0 },
-            unit: Unit::Lux,
+            unit: LightUnit::Lux,
             direct_normal: 0.0,
             diffuse_horizontal: 10_000.0,
             zenith_luminance: 0.0,
@@ -92,7 +92,7 @@ impl Default for Conditions {
 /// The light of the sun: a disc infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunDisc {
-    /// Unit vector towards the sun.
+    /// LightUnit vector towards the sun.
     pub towards: Vec3,
     /// Illuminance per channel in lux of a plane that faces the sun.
     pub illuminance: Vec3,
@@ -122,8 +122,8 @@ pub struct Sky {
 impl Conditions {
     fn check(&self) -> Result<()> {
         let limit = match self.unit {
-            Unit::Lux => MAX_ILLUMINANCE,
-            Unit::Watts => MAX_IRRADIANCE,
+            LightUnit::Lux => MAX_ILLUMINANCE,
+            LightUnit::Watts => MAX_IRRADIANCE,
         };
         check_range("sun_altitude", self.sun.altitude, -FRAC_PI_2, FRAC_PI_2)?;
         check_range("sun_azimuth", self.sun.azimuth, -TAU, TAU)?;
@@ -138,7 +138,7 @@ impl Conditions {
                 check_range(name, kelvin, MIN_KELVIN, MAX_KELVIN)?;
             }
         }
-        if self.zenith_luminance > 0.0 && self.model == Model::Perez {
+        if self.zenith_luminance > 0.0 && self.model == SkyModel::Perez {
             return Err(Error::argument(format!(
                 "zenith_luminance is {}; for the Perez sky it must be 0, because this sky follows from diffuse_horizontal",
                 self.zenith_luminance
@@ -154,18 +154,15 @@ impl Conditions {
     /// A value out of range.
     pub fn sky(&self, north: DVec3, rows: u32) -> Result<Sky> {
         self.check()?;
-        check_range("rows", rows, ROWS[0], ROWS[1])?;
-        if rows % 2 != 0 {
-            return Err(Error::argument(format!("rows is {rows}; it must be even, so that a row ends at the horizon")));
-        }
+        check_rows(rows)?;
         let towards = self.sun.towards(north)?;
         // A sun below the horizon gives the sky the shape that it has when the sun stands on the horizon.
         let is_up = self.sun.altitude > 0.0;
         let centre = if is_up { towards } else { (towards * DVec3::new(1.0, 0.0, 1.0)).normalize_or(DVec3::X) };
         let (state, [direct, diffuse]) = self.illuminances(if is_up { self.direct_normal } else { 0.0 });
         let relative = match self.model {
-            Model::Cie(number) => Relative::Cie(Standard::new(number)?),
-            Model::Perez => Relative::Perez(state.shape()),
+            SkyModel::Cie(number) => Relative::Cie(StandardSky::new(number)?),
+            SkyModel::Perez => Relative::Perez(state.shape()),
         };
 
         // Draw the relative luminance, then scale it.
@@ -210,7 +207,7 @@ impl Conditions {
             let efficacies = state.efficacies(water);
             (state, [direct * efficacies[0], diffuse * efficacies[1]], efficacies)
         };
-        if self.unit == Unit::Watts {
+        if self.unit == LightUnit::Watts {
             let (state, lux, _) = from(given);
             return (state, lux);
         }
@@ -230,10 +227,19 @@ impl Conditions {
     }
 }
 
+/// Checks the number of rows of an image.
+pub fn check_rows(rows: u32) -> Result<()> {
+    check_range("rows", rows, ROWS[0], ROWS[1])?;
+    if rows.is_multiple_of(2) {
+        return Ok(());
+    }
+    Err(Error::argument(format!("rows is {rows}; it must be even, so that a row ends at the horizon")))
+}
+
 /// A sky model prepared for one state.
 enum Relative {
-    Cie(Standard),
-    Perez(Shape),
+    Cie(StandardSky),
+    Perez(LuminanceShape),
 }
 
 impl Relative {

@@ -13,14 +13,14 @@ use std::f64::consts::FRAC_PI_2;
 /// Earth cannot be predicted well enough.
 pub const YEARS: [i32; 2] = [1600, 2500];
 
-/// Julian day of the epoch J2000: noon of 1 January 2000. \[convention\]
+/// Julian day of the epoch J2000: noon of 1 January 2000. [convention]
 const J2000: f64 = 2_451_545.0;
-/// Horizontal parallax of the sun at a distance of one astronomical unit: 8.794″ in radians. \[Meeus 1998, chapter 40\]
+/// Horizontal parallax of the sun at a distance of one astronomical unit: 8.794″ in radians. [paper: Meeus 1998, chapter 40]
 const PARALLAX: f64 = 8.794 / 3600.0 * std::f64::consts::PI / 180.0;
 
 /// A place on the Earth and a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
+pub struct PlaceAndTime {
     /// Latitude in degrees, in `[-90, 90]`; positive to the north.
     pub latitude: f64,
     /// Longitude in degrees, in `[-180, 180]`; positive to the east.
@@ -53,7 +53,6 @@ impl SunPosition {
     /// # Errors
     /// `north` points straight up or down, or is not finite.
     pub fn towards(&self, north: DVec3) -> Result<DVec3> {
-        // Normalise first: the square of a very long or short vector may overflow or vanish.
         let across = north.try_normalize().map(|n| DVec2::new(n.x, n.z)).filter(|across| across.length() > 1e-6);
         let across = across.ok_or_else(|| {
             Error::argument(format!("north is {north}; it must be finite and not along the y axis, which points up"))
@@ -66,7 +65,7 @@ impl SunPosition {
     }
 }
 
-impl Moment {
+impl PlaceAndTime {
     /// Computes the position of the sun.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! Tests of the sun's position against published values, and of the skies against closed forms and their integrals.
 
-use super::cie::{Standard, TRADITIONAL_OVERCAST};
+use super::cie::{StandardSky, TRADITIONAL_OVERCAST};
 use super::perez::{SkyState, precipitable_water};
 use super::*;
 use crate::image::Image;
@@ -9,8 +9,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 const NORTH: DVec3 = DVec3::NEG_Z;
 
-fn moment((year, month, day): (i32, u32, u32), hour: f64, latitude: f64, longitude: f64) -> Moment {
-    Moment { latitude, longitude, year, month, day, hour }
+fn moment((year, month, day): (i32, u32, u32), hour: f64, latitude: f64, longitude: f64) -> PlaceAndTime {
+    PlaceAndTime { latitude, longitude, year, month, day, hour }
 }
 
 fn sun(altitude: f64, azimuth: f64) -> SunPosition {
@@ -66,15 +66,15 @@ fn wrong_moments_are_named() {
     let valid = moment((2024, 2, 29), 12.0, 50.0, 8.0);
     assert!(valid.sun().is_ok());
     for (wrong, message) in [
-        (Moment { year: 2025, ..valid }, "day is 29; it must lie in [1, 28]"),
-        (Moment { year: 1900, ..valid }, "day is 29; it must lie in [1, 28]"),
-        (Moment { year: 1599, ..valid }, "year is 1599; it must lie in [1600, 2500]"),
-        (Moment { year: i32::MAX, ..valid }, "year is 2147483647; it must lie in [1600, 2500]"),
-        (Moment { month: 13, ..valid }, "month is 13; it must lie in [1, 12]"),
-        (Moment { day: 0, ..valid }, "day is 0; it must lie in [1, 29]"),
-        (Moment { hour: f64::NAN, ..valid }, "hour is NaN; it must lie in [-24, 48]"),
-        (Moment { latitude: 90.5, ..valid }, "latitude is 90.5; it must lie in [-90, 90]"),
-        (Moment { longitude: f64::INFINITY, ..valid }, "longitude is inf; it must lie in [-180, 180]"),
+        (PlaceAndTime { year: 2025, ..valid }, "day is 29; it must lie in [1, 28]"),
+        (PlaceAndTime { year: 1900, ..valid }, "day is 29; it must lie in [1, 28]"),
+        (PlaceAndTime { year: 1599, ..valid }, "year is 1599; it must lie in [1600, 2500]"),
+        (PlaceAndTime { year: i32::MAX, ..valid }, "year is 2147483647; it must lie in [1600, 2500]"),
+        (PlaceAndTime { month: 13, ..valid }, "month is 13; it must lie in [1, 12]"),
+        (PlaceAndTime { day: 0, ..valid }, "day is 0; it must lie in [1, 29]"),
+        (PlaceAndTime { hour: f64::NAN, ..valid }, "hour is NaN; it must lie in [-24, 48]"),
+        (PlaceAndTime { latitude: 90.5, ..valid }, "latitude is 90.5; it must lie in [-90, 90]"),
+        (PlaceAndTime { longitude: f64::INFINITY, ..valid }, "longitude is inf; it must lie in [-180, 180]"),
     ] {
         assert_eq!(wrong.sun().unwrap_err().message, message);
     }
@@ -85,7 +85,7 @@ fn azimuths_turn_from_north_over_east() {
     let close = |a: DVec3, b: DVec3| a.distance(b) < 1e-12;
     assert!(close(sun(0.0, 90.0).towards(NORTH).unwrap(), DVec3::X));
     assert!(close(sun(0.0, 180.0).towards(NORTH).unwrap(), DVec3::Z));
-    assert!(close(sun(0.0, 90.0).towards(DVec3::new(1e300, 5e299, 0.0)).unwrap(), DVec3::Z));
+    assert!(close(sun(0.0, 90.0).towards(DVec3::new(1e38, 5e37, 0.0)).unwrap(), DVec3::Z));
     assert!(close(sun(90.0, 123.0).towards(DVec3::X).unwrap(), DVec3::Y));
     for north in [DVec3::Y, DVec3::ZERO, DVec3::NAN] {
         assert!(sun(0.0, 0.0).towards(north).unwrap_err().message.contains("north is"));
@@ -112,14 +112,14 @@ fn level_illuminance(image: &Image) -> f64 {
 #[test]
 fn every_sky_gives_its_illuminance() {
     let mut all: Vec<Conditions> = (1..=TRADITIONAL_OVERCAST)
-        .map(|number| Conditions { model: Model::Cie(number), sun: sun(35.0, 200.0), ..Conditions::default() })
+        .map(|number| Conditions { model: SkyModel::Cie(number), sun: sun(35.0, 200.0), ..Conditions::default() })
         .collect();
     for (direct, diffuse, altitude) in
         [(0.0, 80.0, 10.0), (20.0, 200.0, 40.0), (200.0, 300.0, 60.0), (500.0, 200.0, 25.0), (900.0, 80.0, 70.0)]
     {
         all.push(Conditions {
-            model: Model::Perez,
-            unit: Unit::Watts,
+            model: SkyModel::Perez,
+            unit: LightUnit::Watts,
             sun: sun(altitude, 100.0),
             direct_normal: direct,
             diffuse_horizontal: diffuse,
@@ -129,8 +129,8 @@ fn every_sky_gives_its_illuminance() {
     for conditions in all {
         let sky = conditions.sky(NORTH, 128).unwrap();
         let lux = level_illuminance(&sky.image);
-        if conditions.unit == Unit::Lux {
-            assert_eq!(sky.diffuse_horizontal, 10_000.0);
+        if conditions.unit == LightUnit::Lux {
+            assert!((sky.diffuse_horizontal - 10_000.0).abs() < 1e-9);
         }
         assert!(
             (lux / sky.diffuse_horizontal - 1.0).abs() < 1e-3,
@@ -142,7 +142,7 @@ fn every_sky_gives_its_illuminance() {
 
 #[test]
 fn closed_forms_of_standard_skies() {
-    let sky = |number| Conditions { model: Model::Cie(number), ..Conditions::default() }.sky(NORTH, 64).unwrap();
+    let sky = |number| Conditions { model: SkyModel::Cie(number), ..Conditions::default() }.sky(NORTH, 64).unwrap();
     // Uniform: E = π L.
     let uniform = sky(5);
     assert!((uniform.zenith_luminance - 10_000.0 / PI).abs() < 1e-6);
@@ -150,10 +150,10 @@ fn closed_forms_of_standard_skies() {
     // Traditional overcast: E = 7 π / 9 of the zenith's luminance, three times the horizon's.
     let overcast = sky(TRADITIONAL_OVERCAST);
     assert!((overcast.zenith_luminance / (10_000.0 * 9.0 / (7.0 * PI)) - 1.0).abs() < 1e-3);
-    let standard = Standard::new(TRADITIONAL_OVERCAST).unwrap();
+    let standard = StandardSky::new(TRADITIONAL_OVERCAST).unwrap();
     assert!((standard.luminance(1.0, 0.0) / standard.luminance(0.0, 0.0) - 3.0).abs() < 1e-12);
     // Type 1 comes close to it: 1 + 4 exp(-0.7) times the horizon.
-    let standard = Standard::new(1).unwrap();
+    let standard = StandardSky::new(1).unwrap();
     assert!((standard.luminance(1.0, 0.3) / standard.luminance(0.0, 0.9) - 2.98634).abs() < 1e-4);
     // The ground is diffuse: ρ E / π, with the sun.
     assert!((uniform.ground_luminance - 0.2 * 10_000.0 / PI).abs() < 1e-9);
@@ -162,11 +162,14 @@ fn closed_forms_of_standard_skies() {
     assert!((sunny.ground_luminance - 0.2 * (10_000.0 + 25_000.0) / PI).abs() < 1e-6);
     assert!(sunny.sun.unwrap().towards.distance(glam::Vec3::new(0.0, 0.5, 0.75f32.sqrt())) < 1e-6);
     // The zenith's luminance may be given instead.
-    let by_zenith = Conditions { zenith_luminance: 900.0, model: Model::Cie(12), ..Conditions::default() };
+    let by_zenith = Conditions { zenith_luminance: 900.0, model: SkyModel::Cie(12), ..Conditions::default() };
     let by_zenith = by_zenith.sky(NORTH, 64).unwrap();
     assert!((by_zenith.zenith_luminance - 900.0).abs() < 1e-9);
-    let same =
-        Conditions { diffuse_horizontal: by_zenith.diffuse_horizontal, model: Model::Cie(12), ..Conditions::default() };
+    let same = Conditions {
+        diffuse_horizontal: by_zenith.diffuse_horizontal,
+        model: SkyModel::Cie(12),
+        ..Conditions::default()
+    };
     assert!((same.sky(NORTH, 64).unwrap().zenith_luminance - 900.0).abs() < 1e-9);
 }
 
@@ -190,9 +193,9 @@ fn perez_skies_are_finite_and_not_dark_for_every_sun() {
     for altitude in [-20.0, 0.0, 0.5, 5.0, 20.0, 45.0, 80.0, 90.0] {
         for direct in [0.0, 5.0, 50.0, 150.0, 400.0, 1000.0, 2000.0] {
             for diffuse in [0.0, 0.01, 5.0, 50.0, 150.0, 600.0, 2000.0] {
-                for unit in [Unit::Watts, Unit::Lux] {
+                for unit in [LightUnit::Watts, LightUnit::Lux] {
                     let conditions = Conditions {
-                        model: Model::Perez,
+                        model: SkyModel::Perez,
                         unit,
                         sun: sun(altitude, 77.0),
                         direct_normal: direct,
@@ -214,8 +217,8 @@ fn perez_skies_are_finite_and_not_dark_for_every_sun() {
 fn illuminances_lead_back_to_irradiances() {
     for (direct, diffuse) in [(0.0, 150.0), (300.0, 250.0), (850.0, 90.0)] {
         let watts = Conditions {
-            model: Model::Perez,
-            unit: Unit::Watts,
+            model: SkyModel::Perez,
+            unit: LightUnit::Watts,
             sun: sun(40.0, 150.0),
             direct_normal: direct,
             diffuse_horizontal: diffuse,
@@ -223,7 +226,7 @@ fn illuminances_lead_back_to_irradiances() {
         };
         let first = watts.sky(NORTH, 32).unwrap();
         let lux = Conditions {
-            unit: Unit::Lux,
+            unit: LightUnit::Lux,
             direct_normal: first.direct_normal,
             diffuse_horizontal: first.diffuse_horizontal,
             ..watts
@@ -256,14 +259,14 @@ fn wrong_conditions_are_named() {
         (Conditions { sun: position(1.0, 180.0, 1.0), ..d }, "sun_azimuth is 180; it must lie in [-6.28"),
         (Conditions { sun: position(1.0, 0.0, 1.5e8), ..d }, "sun_distance is 150000000; it must lie in [0.9, 1.1]"),
         (Conditions { direct_normal: -1.0, ..d }, "direct_normal is -1; it must lie in [0, 1000000]"),
-        (Conditions { unit: Unit::Watts, ..d }, "diffuse_horizontal is 10000; it must lie in [0, 2000]"),
+        (Conditions { unit: LightUnit::Watts, ..d }, "diffuse_horizontal is 10000; it must lie in [0, 2000]"),
         (Conditions { diffuse_horizontal: f64::NAN, ..d }, "diffuse_horizontal is NaN"),
         (Conditions { dew_point: 300.0, ..d }, "dew_point is 300"),
         (Conditions { ground_reflectance: 20.0, ..d }, "ground_reflectance is 20; it must lie in [0, 1]"),
         (Conditions { sky_kelvin: 6.5, ..d }, "sky_kelvin is 6.5; it must lie in [1000, 20000]"),
-        (Conditions { zenith_luminance: 5.0, model: Model::Perez, ..d }, "zenith_luminance is 5"),
-        (Conditions { model: Model::Cie(0), ..d }, "cie_type is 0; it must lie in [1, 15], or be 16"),
-        (Conditions { model: Model::Cie(17), ..d }, "cie_type is 17"),
+        (Conditions { zenith_luminance: 5.0, model: SkyModel::Perez, ..d }, "zenith_luminance is 5"),
+        (Conditions { model: SkyModel::Cie(0), ..d }, "cie_type is 0; it must lie in [1, 15], or be 16"),
+        (Conditions { model: SkyModel::Cie(17), ..d }, "cie_type is 17"),
     ] {
         let error = wrong.sky(NORTH, 32).unwrap_err().message;
         assert!(error.starts_with(message), "{error}");
@@ -274,8 +277,8 @@ fn wrong_conditions_are_named() {
     let night = Conditions { sun: sun(-30.0, 0.0), direct_normal: 500.0, diffuse_horizontal: 0.0, ..d };
     let night = night.sky(NORTH, 32).unwrap();
     assert!(night.sun.is_none() && night.image.data.iter().all(|&v| v == 0.0));
-    let below = Conditions { sun: position(-FRAC_PI_2, 0.0, 1.0), model: Model::Cie(12), ..d };
-    assert_eq!(below.sky(NORTH, 32).unwrap().diffuse_horizontal, 10_000.0);
+    let below = Conditions { sun: position(-FRAC_PI_2, 0.0, 1.0), model: SkyModel::Cie(12), ..d };
+    assert!((below.sky(NORTH, 32).unwrap().diffuse_horizontal - 10_000.0).abs() < 1e-9);
 }
 
 /// A weather file of `days` days from 1 January, with light from 7:00 to 16:00. Its header says that it ends on `end`.
@@ -334,7 +337,7 @@ fn broken_weather_files_are_refused_with_the_line() {
         (lines[..5].join("\n"), "line 5: the file ends here, before its header"),
         (lines[..8].join("\n"), "line 8: the file ends here, before its first hour"),
         (lines[..40].join("\n"), "line 40: the file ends here, before hour 24 of 1/2"),
-        (whole[..whole.len() - 150].into(), "line 56: the row has"),
+        (whole[..whole.len() - 100].into(), "line 56: the row has"),
         (field(14, "5000"), "line 20: the direct normal irradiance is 5000; it must lie in [0, 2000]"),
         (field(15, "-3"), "line 20: the diffuse horizontal irradiance is -3"),
         (field(14, "NaN"), "line 20: the direct normal irradiance is NaN"),

@@ -5,11 +5,13 @@
 
 use super::context::luxfer_context;
 use super::guard::enter;
+use super::handle::Owned;
 use super::params::{self, Report, Versioned, versioned};
 use super::query::LUXFER_NONE;
 use super::scene::luxfer_scene;
 use super::status::luxfer_status;
-use crate::daylight::{Conditions, Model, Moment, SunPosition, Unit};
+use crate::daylight::sky::check_rows;
+use crate::daylight::{Conditions, LightUnit, PlaceAndTime, SkyModel, SunPosition};
 use crate::error::{Error, Result};
 use crate::scene::Environment;
 use glam::DVec3;
@@ -145,13 +147,13 @@ impl luxfer_sky_params {
     fn conditions(&self) -> Result<Conditions> {
         Ok(Conditions {
             model: match self.model {
-                LUXFER_SKY_CIE => Model::Cie(self.cie_type),
-                LUXFER_SKY_PEREZ => Model::Perez,
+                LUXFER_SKY_CIE => SkyModel::Cie(self.cie_type),
+                LUXFER_SKY_PEREZ => SkyModel::Perez,
                 other => return Err(Error::argument(format!("model is {other}; it must be a LUXFER_SKY_ value"))),
             },
             unit: match self.unit {
-                LUXFER_DAYLIGHT_LUX => Unit::Lux,
-                LUXFER_DAYLIGHT_WATTS => Unit::Watts,
+                LUXFER_DAYLIGHT_LUX => LightUnit::Lux,
+                LUXFER_DAYLIGHT_WATTS => LightUnit::Watts,
                 other => return Err(Error::argument(format!("unit is {other}; it must be a LUXFER_DAYLIGHT_ value"))),
             },
             sun: SunPosition { altitude: self.sun_altitude, azimuth: self.sun_azimuth, distance: self.sun_distance },
@@ -213,7 +215,7 @@ pub unsafe extern "C" fn luxfer_sun_get_position(
     enter(context, |_| {
         let out = Report::new(position, size)?;
         let luxfer_sun_params { year, month, day, hour, latitude, longitude, .. } = params::read_required(params)?;
-        let sun = Moment { latitude, longitude, year, month, day, hour }.sun()?;
+        let sun = PlaceAndTime { latitude, longitude, year, month, day, hour }.sun()?;
         out.set(luxfer_sun_position {
             altitude: sun.altitude,
             azimuth: sun.azimuth,
@@ -227,8 +229,9 @@ pub unsafe extern "C" fn luxfer_sun_get_position(
 /// Sets the sky and the sun of a scene. The sky and the ground become the environment of the scene, an image that
 /// replaces an earlier environment. The sun becomes a directional light with an angular diameter of 0.533 degrees at a
 /// distance of 1: it casts soft shadows, and pictures and mirrors show it. A later call changes this light; if it gives
-/// no sun, the light stays, with an illuminance of 0, so that the other lights keep their indices. Files of
-/// luxfer_scene_export contain the sun as a light without a size, and no sky. params may be NULL for the defaults.
+/// no sun, the light stays, with an illuminance of 0, so that the other lights keep their indices.
+/// luxfer_scene_set_environment replaces the sky, but not the sun. Files of luxfer_scene_export contain the sun as a
+/// light without a size, and no sky. params may be NULL for the defaults.
 /// report may be NULL; size is sizeof *report. Any thread.
 /// LUXFER_INVALID_ARGUMENT if a value is out of range, or a setting does not suit the model; LUXFER_OUT_OF_MEMORY beyond
 /// the memory budget.
@@ -242,13 +245,18 @@ pub unsafe extern "C" fn luxfer_scene_set_sky(
     enter(scene, |object| {
         let out = if report.is_null() { None } else { Some(Report::new(report, size)?) };
         let params = params::read(params)?;
-        let sky = params.conditions()?.sky(DVec3::from(params.north.map(f64::from)), params.rows)?;
-        let bytes = (sky.image.data.len() * size_of::<f32>()) as u64;
+        let conditions = params.conditions()?;
+        check_rows(params.rows)?;
+        // The image has 2 rows x rows pixels of 3 floats. The luminance of its upper half is drawn in double precision.
+        let area = u64::from(params.rows).pow(2);
+        let charge = object.context().charge(area * 6 * size_of::<f32>() as u64)?;
+        let _drawing = object.context().charge(area * size_of::<f64>() as u64)?;
+        let sky = conditions.sky(DVec3::from(params.north.map(f64::from)), params.rows)?;
         let (sun, image) = (sky.sun, sky.image);
-        let index = object.change_environment(bytes, |scene| {
+        let index = object.change_environment(charge, |scene| {
             scene.environment = Some(Environment::Image(image));
-            Ok(scene.set_sun(sun.map(|sun| (-sun.towards, sun.illuminance, sun.half_angle))))
-        })?;
+            scene.set_sun(sun.map(|sun| (-sun.towards, sun.illuminance, sun.half_angle)))
+        });
         if let Some(out) = out {
             out.set(luxfer_sky_report {
                 sun: index.map_or(LUXFER_NONE, |index| index as u32),

@@ -129,10 +129,11 @@ impl SceneState {
         Self { scene, world: None, charges, environment: None }
     }
 
-    fn change<T>(&mut self, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
+    /// Returns the scene for a change.
+    fn changed(&mut self) -> &mut Scene {
         // Drop the world, which shares the scene: otherwise the change would copy the scene.
         self.world = None;
-        change(Arc::make_mut(&mut self.scene))
+        Arc::make_mut(&mut self.scene)
     }
 }
 
@@ -183,21 +184,19 @@ impl SceneObject {
     pub(super) fn change<T>(&self, bytes: u64, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
         let charge = self.context.charge(bytes)?;
         let state = &mut *lock(&self.state);
-        let result = state.change(change)?;
+        let result = change(state.changed())?;
         if bytes > 0 {
             state.charges.push(charge);
         }
         Ok(result)
     }
 
-    /// Changes the scene and its environment like [`SceneObject::change`]. The charge of `bytes` replaces the charge for
-    /// the environment before.
-    pub(super) fn change_environment<T>(&self, bytes: u64, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
-        let charge = self.context.charge(bytes)?;
+    /// Changes the scene and its environment. The charge of the new environment replaces that of the environment before.
+    pub(super) fn change_environment<T>(&self, charge: Charge, change: impl FnOnce(&mut Scene) -> T) -> T {
         let state = &mut *lock(&self.state);
-        let result = state.change(change)?;
+        let result = change(state.changed());
         state.environment = Some(charge);
-        Ok(result)
+        result
     }
 
     /// Returns the prepared form of `scene` if an earlier call has prepared it for tracing.
@@ -355,10 +354,9 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
     enter(scene, |object| {
         let strength = read_colour(rgb)?;
         let Some(image) = Pixels::optional(&object.context, image, "image")? else {
-            return object.change_environment(0, |scene| {
-                scene.environment = Some(Environment::Constant(strength));
-                Ok(())
-            });
+            let charge = object.context.charge(0)?;
+            object.change_environment(charge, |scene| scene.environment = Some(Environment::Constant(strength)));
+            return Ok(());
         };
         if let Some(v) = image.image().data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
             return Err(Error::argument(format!("a sample of the image is {v}; it must be finite and not negative")));
@@ -371,10 +369,9 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
             return Err(Error::argument("the image times its factors is not finite; lower them"));
         }
         let bytes = (image.data.len() * size_of::<f32>()) as u64;
-        object.change_environment(bytes, |scene| {
-            scene.environment = Some(Environment::Image(image));
-            Ok(())
-        })
+        let charge = object.context.charge(bytes)?;
+        object.change_environment(charge, |scene| scene.environment = Some(Environment::Image(image)));
+        Ok(())
     })
 }
 

@@ -1,6 +1,6 @@
 //! Lights of a scene
 //!
-//! Adds punctual lights to a scene: point lights, spot lights, directional lights (parallel light from far away) and
+//! Adds punctual lights to a scene: point lights, spot lights, directional lights (light from infinitely far away) and
 //! luminaires with a measured intensity distribution. Area lights are surfaces whose material emits.
 
 use super::distribution::luxfer_distribution;
@@ -24,7 +24,7 @@ pub type luxfer_light_kind = i32;
 pub const LUXFER_LIGHT_POINT: luxfer_light_kind = 0;
 /// A spot light: it shines into a cone.
 pub const LUXFER_LIGHT_SPOT: luxfer_light_kind = 1;
-/// A directional light: it shines from infinitely far away, with parallel rays.
+/// A directional light: it shines from infinitely far away, with parallel rays or as a disc.
 pub const LUXFER_LIGHT_DIRECTIONAL: luxfer_light_kind = 2;
 
 /// A punctual light. Fill it with luxfer_light_params_init.
