@@ -52,8 +52,8 @@ impl StandardSky {
         let index = (number as usize).checked_sub(1).and_then(|index| TYPES.get(index));
         let Some(&[gradation, indicatrix]) = index else {
             return Err(Error::argument(format!(
-                "cie_type is {number}; it must lie in [1, 15], or be {TRADITIONAL_OVERCAST} for the traditional overcast \
-                 sky"
+                "cie_type is {number}; it must lie in [1, 15], or be {TRADITIONAL_OVERCAST} for the traditional \
+                 overcast sky"
             )));
         };
         let ([a, b], [c, d, e]) = (GRADATIONS[gradation - 1], INDICATRICES[indicatrix - 1]);

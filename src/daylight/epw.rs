@@ -1,5 +1,5 @@
-//! Reads weather files of EnergyPlus (EPW): the place, and irradiance and dew point of each hour. The format is described
-//! in "Auxiliary Programs" of EnergyPlus, chapter "Weather Converter Program".
+//! Reads weather files of EnergyPlus (EPW): the place, and irradiance and dew point of each hour. The format is
+//! described in "Auxiliary Programs" of EnergyPlus, chapter "Weather Converter Program".
 //!
 //! The reader is strict: it checks every value that it returns, the number of fields of each row, the order of the
 //! rows' dates, and that the file goes on to the end of its last data period. Errors name the line. Files with several

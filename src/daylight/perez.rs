@@ -157,8 +157,8 @@ impl SkyState {
         let delta = if (1..5).contains(&bin) { self.brightness.max(INTERMEDIATE_BRIGHTNESS) } else { self.brightness };
         let rows = LUMINANCE[bin];
         let [a, b, c, d, e] = rows.map(|[p, q, r, s]| p + q * z + delta * (r + s * z));
-        // Outside the models' data, b may be positive, which would make the horizon infinitely bright. As b approaches 0,
-        // the gradation becomes constant: leave it out. The smallest a for which no part of the sky is negative is
+        // Outside the models' data, b may be positive, which would make the horizon infinitely bright. As b approaches
+        // 0, the gradation becomes constant: leave it out. The smallest a for which no part of the sky is negative is
         // -exp(-b), because exp(b / cos ζ) is largest at the zenith.
         let [a, b] = if b < 0.0 { [a.max(-maths::exp(-b)), b] } else { [0.0, 0.0] };
         let shape = LuminanceShape { a, b, c, d, e, offset: 0.0 };

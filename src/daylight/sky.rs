@@ -140,7 +140,7 @@ impl Conditions {
         }
         if self.zenith_luminance > 0.0 && self.model == SkyModel::Perez {
             return Err(Error::argument(format!(
-                "zenith_luminance is {}; for the Perez sky it must be 0, because this sky follows from diffuse_horizontal",
+                "zenith_luminance is {}; it must be 0 for the Perez sky, which follows from diffuse_horizontal",
                 self.zenith_luminance
             )));
         }
@@ -250,9 +250,9 @@ impl Relative {
         }
     }
 
-    /// Draws the upper half of an image of `rows` rows: the relative luminance at the centre of each pixel. Also returns
-    /// the illuminance of a level plane by these pixels, each with uniform luminance. `sun` is the unit vector towards
-    /// the sun.
+    /// Draws the upper half of an image of `rows` rows: the relative luminance at the centre of each pixel. Also
+    /// returns the illuminance of a level plane by these pixels, each with uniform luminance. `sun` is the unit vector
+    /// towards the sun.
     fn draw(&self, sun: DVec3, rows: usize) -> Result<(Vec<f64>, f64)> {
         let columns = 2 * rows;
         let mut luminance = try_with_capacity(rows / 2 * columns)?;

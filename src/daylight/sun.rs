@@ -15,7 +15,7 @@ pub const YEARS: [i32; 2] = [1600, 2500];
 
 /// Julian day of the epoch J2000: noon of 1 January 2000. [convention]
 const J2000: f64 = 2_451_545.0;
-/// Horizontal parallax of the sun at a distance of one astronomical unit: 8.794″ in radians. [paper: Meeus 1998, chapter 40]
+/// Horizontal parallax of the sun at one astronomical unit: 8.794″ in radians. [paper: Meeus 1998, chapter 40]
 const PARALLAX: f64 = 8.794 / 3600.0 * std::f64::consts::PI / 180.0;
 
 /// A place on the Earth and a time.

@@ -92,8 +92,8 @@ fn azimuths_turn_from_north_over_east() {
     }
 }
 
-/// Returns the illuminance in lux of a level plane by a sky's image, interpolated as the renderer does it, and by a fine
-/// sum over directions.
+/// Returns the illuminance in lux of a level plane by a sky's image, interpolated as the renderer does it, and by a
+/// fine sum over directions.
 fn level_illuminance(image: &Image) -> f64 {
     let (rows, columns) = (240, 360);
     let mut sum = 0.0;
@@ -283,21 +283,20 @@ fn wrong_conditions_are_named() {
 
 /// A weather file of `days` days from 1 January, with light from 7:00 to 16:00. Its header says that it ends on `end`.
 fn weather_file(days: u32, end: &str) -> String {
-    let mut text = String::from("LOCATION,Testville,-,DEU,made up,000000,48.13,11.70,1.0,529.0\r\n");
-    for name in ["DESIGN CONDITIONS,0", "TYPICAL/EXTREME PERIODS,0", "GROUND TEMPERATURES,0"] {
-        text += &format!("{name}\r\n");
-    }
-    text += "HOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0\r\nCOMMENTS 1,\r\nCOMMENTS 2,\r\n";
-    text += &format!("DATA PERIODS,1,1,Data,Sunday, 1/ 1,{end}\r\n");
-    for i in 0..24 * days {
+    let mut lines = vec![String::from("LOCATION,Testville,-,DEU,made up,000000,48.13,11.70,1.0,529.0")];
+    let header = ["DESIGN CONDITIONS,0", "TYPICAL/EXTREME PERIODS,0", "GROUND TEMPERATURES,0"];
+    let header = header.iter().chain(&["HOLIDAYS/DAYLIGHT SAVINGS,No,0,0,0", "COMMENTS 1,", "COMMENTS 2,"]);
+    lines.extend(header.map(|&line| line.to_string()));
+    lines.push(format!("DATA PERIODS,1,1,Data,Sunday, 1/ 1,{end}"));
+    lines.extend((0..24 * days).map(|i| {
         let (day, hour) = (i / 24 + 1, i % 24 + 1);
         let light = if (8..=16).contains(&hour) { 100 * hour } else { 0 };
-        text += &format!(
+        format!(
             "1999,1,{day},{hour},60,?9?9,-1.5,-3.5,86,95000,0,1415,270,150,{light},55.5,9999,999999,6200,9999,90,1.2,\
-             9,9,20,77777,9,999999999,50,0.1,0,88,0.2,0,1\r\n"
-        );
-    }
-    text
+             9,9,20,77777,9,999999999,50,0.1,0,88,0.2,0,1"
+        )
+    }));
+    lines.join("\r\n") + "\r\n"
 }
 
 #[test]

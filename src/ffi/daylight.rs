@@ -75,8 +75,8 @@ pub const LUXFER_DAYLIGHT_LUX: luxfer_daylight_unit = 0;
 /// Irradiance in W/m², converted to lux by the luminous efficacies of Perez et al. (1990).
 pub const LUXFER_DAYLIGHT_WATTS: luxfer_daylight_unit = 1;
 
-/// A state of sun and sky. Fill it with luxfer_sky_params_init. The default is the overcast sky of type 1 with 10,000 lx:
-/// 100 lx indoors are then a daylight factor of 1 %.
+/// A state of sun and sky. Fill it with luxfer_sky_params_init. The default is the overcast sky of type 1 with 10,000
+/// lx: 100 lx indoors are then a daylight factor of 1 %.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct luxfer_sky_params {
@@ -89,13 +89,13 @@ pub struct luxfer_sky_params {
     pub cie_type: u32,
     /// Unit of direct_normal and diffuse_horizontal: a LUXFER_DAYLIGHT_ value; default LUXFER_DAYLIGHT_LUX.
     pub unit: luxfer_daylight_unit,
-    /// Altitude of the sun in radians, in [-pi / 2, pi / 2], such as luxfer_sun_get_position gives it; default pi / 4. A
-    /// sun at 0 or below gives no light, and the sky has the shape that it has with the sun at 0.
+    /// Altitude of the sun in radians, in [-pi / 2, pi / 2], such as luxfer_sun_get_position gives it; default pi / 4.
+    /// A sun at 0 or below gives no light, and the sky has the shape that it has with the sun at 0.
     pub sun_altitude: f64,
     /// Azimuth of the sun in radians, from north over east, in [-2 pi, 2 pi]; default pi, the south.
     pub sun_azimuth: f64,
-    /// Distance of the sun in astronomical units, in [0.9, 1.1]; default 1. It counts for the Perez sky, for irradiances
-    /// and for the size of the sun's disc.
+    /// Distance of the sun in astronomical units, in [0.9, 1.1]; default 1. It counts for the Perez sky, for
+    /// irradiances and for the size of the sun's disc.
     pub sun_distance: f64,
     /// Light of the sun on a plane that faces it, in [0, 1e6] lx or [0, 2000] W/m²; default 0.
     pub direct_normal: f64,
@@ -107,8 +107,8 @@ pub struct luxfer_sky_params {
     /// Dew point at the ground in degrees Celsius, in [-90, 60], from which the efficacies of irradiances estimate the
     /// water in the air; default 11, which stands for 2.0 cm of water.
     pub dew_point: f64,
-    /// Reflectance of the ground, in [0, 1]; default 0.2. Below the horizon the environment has the uniform luminance of
-    /// a diffuse ground with this reflectance under the unobstructed sun and sky.
+    /// Reflectance of the ground, in [0, 1]; default 0.2. Below the horizon the environment has the uniform luminance
+    /// of a diffuse ground with this reflectance under the unobstructed sun and sky.
     pub ground_reflectance: f64,
     /// Colour temperature of the sky in kelvin, in [1000, 20000]; 0, the default: neutral white.
     pub sky_kelvin: f64,
@@ -233,8 +233,8 @@ pub unsafe extern "C" fn luxfer_sun_get_position(
 /// luxfer_scene_set_environment replaces the sky, but not the sun. Files of luxfer_scene_export contain the sun as a
 /// light without a size, and no sky. params may be NULL for the defaults.
 /// report may be NULL; size is sizeof *report. Any thread.
-/// LUXFER_INVALID_ARGUMENT if a value is out of range, or a setting does not suit the model; LUXFER_OUT_OF_MEMORY beyond
-/// the memory budget.
+/// LUXFER_INVALID_ARGUMENT if a value is out of range, or a setting does not suit the model; LUXFER_OUT_OF_MEMORY
+/// beyond the memory budget.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_sky(
     scene: *mut luxfer_scene,

@@ -191,7 +191,8 @@ impl SceneObject {
         Ok(result)
     }
 
-    /// Changes the scene and its environment. The charge of the new environment replaces that of the environment before.
+    /// Changes the scene and its environment. The charge of the new environment replaces that of the environment
+    /// before.
     pub(super) fn change_environment<T>(&self, charge: Charge, change: impl FnOnce(&mut Scene) -> T) -> T {
         let state = &mut *lock(&self.state);
         let result = change(state.changed());

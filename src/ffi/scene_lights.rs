@@ -52,8 +52,8 @@ pub struct luxfer_light_params {
     /// Must be 0.
     pub reserved: u32,
     /// Angle in radians under which the disc of a directional light is seen, in [0, pi / 2]; for the sun it is 0.0093.
-    /// The disc has uniform luminance; it casts soft shadows, and pictures and mirrors show it. 0, the default: parallel
-    /// rays.
+    /// The disc has uniform luminance; it casts soft shadows, and pictures and mirrors show it. 0, the default:
+    /// parallel rays.
     pub angular_diameter: f32,
 }
 

@@ -1,7 +1,7 @@
 //! Weather files
 //!
-//! Reads the weather files of EnergyPlus (EPW): a place, and the light of sun and sky in each hour of a year. The call is
-//! synchronous: it does its work before it returns.
+//! Reads the weather files of EnergyPlus (EPW): a place, and the light of sun and sky in each hour of a year. The call
+//! is synchronous: it does its work before it returns.
 
 use super::context::luxfer_context;
 use super::guard::enter;
@@ -81,13 +81,13 @@ impl luxfer_weather_hour {
     }
 }
 
-/// Reads a weather file of EnergyPlus (.epw) with one row per hour; path is UTF-8. The array hours receives count hours,
-/// in the order of the file, from the hour of index first on; hour_stride is the distance between its elements in bytes;
-/// 0: sizeof(luxfer_weather_hour). With a count of 0, hours may be NULL and only *report is filled. size is sizeof
-/// *report. A file has at most 8784 hours. Any thread.
-/// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed, lacks an hour or ends early (the message names
-/// the line); LUXFER_UNSUPPORTED if it has several rows per hour; LUXFER_NOT_FOUND if the file ends before the last of
-/// the hours; LUXFER_INVALID_ARGUMENT if the stride is too small.
+/// Reads a weather file of EnergyPlus (.epw) with one row per hour; path is UTF-8. The array hours receives count
+/// hours, in the order of the file, from the hour of index first on; hour_stride is the distance between its elements
+/// in bytes; 0: sizeof(luxfer_weather_hour). With a count of 0, hours may be NULL and only *report is filled. size is
+/// sizeof *report. A file has at most 8784 hours. Any thread.
+/// LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed, lacks an hour or ends early (the message
+/// names the line); LUXFER_UNSUPPORTED if it has several rows per hour; LUXFER_NOT_FOUND if the file ends before the
+/// last of the hours; LUXFER_INVALID_ARGUMENT if the stride is too small.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_weather_read(
     context: *mut luxfer_context,

@@ -22,13 +22,14 @@ if TYPE_CHECKING:
 _NUMBERS = ("hour", "dew_point", "direct_normal", "diffuse_horizontal")
 _NUMBERS += ("direct_normal_illuminance", "diffuse_horizontal_illuminance")
 
+_DATE = [("year", "i4"), ("month", "u4"), ("day", "u4"), ("reserved", "u4")]
 #: The entry of each hour of Weather.hours. Values that the file does not have are NaN.
-HOUR = np.dtype([("year", "i4"), ("month", "u4"), ("day", "u4"), ("reserved", "u4"), *((name, "f8") for name in _NUMBERS)])
+HOUR = np.dtype([*_DATE, *((name, "f8") for name in _NUMBERS)])
 
 
 def sun_position(context: Context, time: datetime, latitude: float, longitude: float) -> SunPosition:
-    """The position of the sun at a time, which must have a time zone; latitude and longitude in degrees, positive to the
-    north and to the east. The result has altitude and azimuth in radians, and the distance in astronomical units.
+    """The position of the sun at a time, which must have a time zone; latitude and longitude in degrees, positive to
+    the north and to the east. The result has altitude and azimuth in radians, and the distance in astronomical units.
 
     >>> from datetime import datetime, timedelta, timezone
     >>> noon = datetime(2026, 6, 21, 12, 30, tzinfo=timezone(timedelta(hours=2)))

@@ -1,9 +1,10 @@
 //! A directional light as a uniform disc infinitely far away, such as the sun's.
 //!
-//! Let α be half of the angle under which the disc is seen. A disc of luminance L lights a surface that faces its centre
-//! with the illuminance E = π sin²α L. Light samples are uniform on the unit disc that the visible disc becomes when it
-//! is projected onto this surface (Malley's method, restricted to sin α), so that the illuminance of this surface has no
-//! variance. Their solid-angle pdf is cos ψ / (π sin²α), with the angle ψ to the centre; L / pdf is E / cos ψ.
+//! Let α be half of the angle under which the disc is seen. A disc of luminance L lights a surface that faces its
+//! centre with the illuminance E = π sin²α L. Light samples are uniform on the unit disc that the visible disc becomes
+//! when it is projected onto this surface (Malley's method, restricted to sin α), so that the illuminance of this
+//! surface has no variance. Their solid-angle pdf is cos ψ / (π sin²α), with the angle ψ to the centre; L / pdf is E /
+//! cos ψ.
 
 use crate::maths;
 use glam::Vec3;
