@@ -2,10 +2,10 @@
 
     LUXFER_LIBRARY=target/release/libluxfer.so target/peers/exchange/bin/python benches/peers/daylight.py
 
-The skies come from gendaylit (Perez) and gensky (CIE), with the same irradiances and the same position of the sun. The
-first table has the illuminances, by the sky alone, of a level plane and of vertical planes to the north, east, south and
-west. The second table has the points of a grid in a room of 5 by 4 m with a window of 3 by 1.5 m, by sky and sun, and the
-processor time of both programs.
+The skies come from gendaylit (Perez) and gensky (CIE), with the same irradiances and the same position of the sun.
+The first table has the illuminances, by the sky alone, of a level plane and of vertical planes to the north, east,
+south and west. The second table has the points of a grid in a room of 5 by 4 m with a window of 3 by 1.5 m, by sky and
+sun, and the processor time of both programs.
 """
 
 import math
@@ -46,7 +46,8 @@ PLANES = {"level": (0, 1, 0), "north": (0, 0, -1), "east": (1, 0, 0), "south": (
 
 
 def run(*words: object, text: str = "", folder: str) -> str:
-    ran = subprocess.run([BIN / str(words[0]), *map(str, words[1:])], input=text, capture_output=True, text=True, cwd=folder, env=ENVIRONMENT)
+    command = [BIN / str(words[0]), *map(str, words[1:])]
+    ran = subprocess.run(command, input=text, capture_output=True, text=True, cwd=folder, env=ENVIRONMENT)
     if ran.returncode:
         raise SystemExit(f"{words}: {ran.stderr}")
     return ran.stdout
@@ -75,7 +76,8 @@ def skies(folder: str) -> dict[str, tuple[str, dict[str, object]]]:
         light = {"direct_normal": direct, "diffuse_horizontal": diffuse, "dew_point": DEW_POINT}
         out[name] = (sky, {"model": "perez", "unit": "watts", **position, **light})
     for name, flag, number in (("CIE overcast", "-c", 16), ("CIE uniform", "-u", 5), ("CIE clear", "+s", 12)):
-        sky = run("gensky", 5, 15, 10.0, *PLACE, flag, "-B" if flag != "+s" else "-b", 100 / 179 * 100 if flag != "+s" else 20, folder=folder)
+        strength = ("-b", 20) if flag == "+s" else ("-B", 10_000 / 179)
+        sky = run("gensky", 5, 15, 10.0, *PLACE, flag, *strength, folder=folder)
         settings: dict[str, object] = {"cie_type": number}
         if flag == "+s":
             altitude, azimuth = sun_of(sky)
@@ -102,7 +104,8 @@ def radiance(scene: str, points: np.ndarray, settings: str, folder: str) -> tupl
     text = "\n".join(" ".join(map(str, row)) for row in turned) + "\n"
     before = sum(os.times()[2:4])
     lines = run("rtrace", "-h", "-I", *settings.split(), "scene.oct", text=text, folder=folder)
-    return np.array([list(map(float, line.split())) for line in lines.splitlines()]) @ BRIGHTNESS, sum(os.times()[2:4]) - before
+    spent = sum(os.times()[2:4]) - before
+    return np.array([list(map(float, line.split())) for line in lines.splitlines()]) @ BRIGHTNESS, spent
 
 
 def luxes(scene: luxfer.Scene, samples: int, columns: int = 1, rows: int = 1, **grid: object) -> np.ndarray:
@@ -121,13 +124,14 @@ def free_planes(all_skies: dict[str, tuple[str, dict[str, object]]], folder: str
         scene = luxfer.Scene(CONTEXT)
         scene.add_material()
         scene.add_mesh([[0, -9, 0], [1, -9, 0], [0, -9, 1]], [[0, 1, 2]])
-        report = scene.set_sky(**{**settings, "direct_normal": settings.get("direct_normal", 0), "ground_reflectance": 0})
+        report = scene.set_sky(**{**settings, "ground_reflectance": 0})
         row = f"{name:14}"
         for normal, their in zip(PLANES.values(), theirs):
             # Without the sun, whose illuminance of the plane is known.
             x, y, z = normal
             altitude, azimuth = (settings.get(k, 0.0) for k in ("sun_altitude", "sun_azimuth"))
-            towards = np.array([math.cos(altitude) * math.sin(azimuth), math.sin(altitude), -math.cos(altitude) * math.cos(azimuth)])
+            level = math.cos(altitude)
+            towards = np.array([level * math.sin(azimuth), math.sin(altitude), -level * math.cos(azimuth)])
             across, down = ((1, 0, 0), (0, 0, 1)) if y else ((0, 1, 0), (z, 0, x))
             tiny = [tuple(1e-3 * v for v in edge) for edge in (across, down)]
             ours = luxes(scene, 1 << 20, origin=(0, 0, 0), across=tiny[0], down=tiny[1], normal=normal)[0, 0]
@@ -139,7 +143,7 @@ def free_planes(all_skies: dict[str, tuple[str, dict[str, object]]], folder: str
 
 
 def room() -> list[tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...], float]]:
-    """The rectangles of the room, each with a corner, two edges and its reflectance. A window in its south wall at z = 4."""
+    """The rectangles of the room: a corner, two edges and the reflectance. The south wall, at z = 4, has a window."""
     x, y, z = 5.0, 2.8, 4.0
     low, high, left, right = 0.9, 2.4, 1.0, 4.0
     rectangles = [
@@ -156,7 +160,8 @@ def room() -> list[tuple[tuple[float, ...], tuple[float, ...], tuple[float, ...]
 
 def window(all_skies: dict[str, tuple[str, dict[str, object]]], folder: str) -> None:
     print("\nroom with a window to the south, grid of 8 x 6 points 0.85 m above the floor, by sky and sun")
-    print(f"{'sky':14}{'mean of luxfer':>16}{'Radiance':>10}{'difference':>12}{'rms of points':>15}{'CPU-s':>9}{'Radiance':>10}")
+    heads = ("mean of luxfer", 16), ("Radiance", 10), ("difference", 13), ("rms of points", 15), ("CPU-s", 9), ("Radiance", 10)
+    print(f"{'sky':14}" + "".join(f"{head:>{width}}" for head, width in heads))
     scene, text = luxfer.Scene(CONTEXT), ""
     for number, (corner, first, second, value) in enumerate(room()):
         a, b, c = (np.array(v, float) for v in (corner, first, second))
@@ -164,16 +169,18 @@ def window(all_skies: dict[str, tuple[str, dict[str, object]]], folder: str) -> 
         paint = scene.add_material(base_color=(value,) * 3, metallic=0, ior=1, double_sided=True)
         scene.add_mesh(corners, [[0, 1, 2], [0, 2, 3]], material=paint)
         places = " ".join(f"{px} {-pz} {py}" for px, py, pz in corners)
-        text += f"void plastic m{number} 0 0 5 {value} {value} {value} 0 0\nm{number} polygon p{number} 0 0 12 {places}\n"
+        text += f"void plastic m{number} 0 0 5 {value} {value} {value} 0 0\n"
+        text += f"m{number} polygon p{number} 0 0 12 {places}\n"
     grid = {"origin": (0.5, 0.85, 0.5), "across": (4, 0, 0), "down": (0, 0, 3), "normal": (0, 1, 0)}
     xs, zs = 0.5 + 4 * (np.arange(8) + 0.5) / 8, 0.5 + 3 * (np.arange(6) + 0.5) / 6
     points = np.array([(x, 0.85, z, 0, 1, 0) for z in zs for x in xs])
     for name, (sky, settings) in all_skies.items():
-        report = scene.set_sky(**settings, **({} if "direct_normal" in settings else {"direct_normal": 0}))
+        report = scene.set_sky(**settings)
         if "solar source" in sky and "direct_normal" not in settings:
             continue  # gensky's sun has another illuminance
         # The ground of gendaylit follows another formula: state the same luminance.
-        ground = f"void glow earth 0 0 4 {' '.join([f'{report.ground_luminance / 179:.6g}'] * 3)} 0\nearth source ground 0 0 4 0 0 -1 180\n"
+        grey = " ".join([f"{report.ground_luminance / 179:.6g}"] * 3)
+        ground = f"void glow earth 0 0 4 {grey} 0\nearth source ground 0 0 4 0 0 -1 180\n"
         begun = time.process_time()
         ours = luxes(scene, 4096, 8, 6, **grid).reshape(-1)
         spent = time.process_time() - begun

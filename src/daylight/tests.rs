@@ -2,6 +2,7 @@
 
 use super::cie::{StandardSky, TRADITIONAL_OVERCAST};
 use super::perez::{SkyState, precipitable_water};
+use super::shape::LuminanceShape;
 use super::*;
 use crate::image::Image;
 use glam::DVec3;
@@ -186,6 +187,34 @@ fn clearness_brightness_and_efficacies_are_those_of_the_paper() {
     assert!((precipitable_water(10.973_531_15) - 2.0).abs() < 1e-6);
     assert_eq!(SkyState::new(&sun(20.0, 0.0), 0.0, 0.0).clearness, 1.0);
     assert_eq!(SkyState::new(&sun(20.0, 0.0), 500.0, 0.0).clearness, 12.0);
+}
+
+/// Radiance's gendaylit (pyradiance 1.3.1) prints the parameters a to e of its sky and the sun's luminance, here times
+/// the solid angle of its disc: `gendaylit 12 10 12 -a 48 -o -11 -m -15 -W 0 60 -O 2`, and so on. The sine of the
+/// altitude is the third coordinate of its sun; the distance follows from its formula for the day. The rows are of the
+/// bins 1 to 8.
+#[test]
+fn the_perez_sky_has_the_parameters_of_gendaylit() {
+    let rows = [
+        ([0.0, 60.0], 0.324328, 0.984421, [0.766403, -0.620526, 0.466976, -0.401637, -0.033066], 0.0),
+        ([40.0, 160.0], 0.443630, 0.991659, [-1.399388, -0.912311, 8.801564, -2.573349, 0.157566], 3621.0),
+        ([150.0, 200.0], 0.655019, 0.995785, [-1.114594, -0.648953, 11.780740, -3.325455, 0.108700], 14477.0),
+        ([250.0, 230.0], 0.640197, 1.006574, [-1.036644, -0.718909, 12.888922, -3.168897, 0.146220], 23856.0),
+        ([400.0, 300.0], 0.904990, 1.017105, [-1.127253, -0.905703, 14.292438, -3.171886, 0.006165], 38694.0),
+        ([450.0, 50.0], 0.166139, 0.985024, [-0.915580, -0.277157, 13.309345, -3.318200, 0.418498], 30361.0),
+        ([830.0, 95.0], 0.642119, 1.016687, [-0.975391, -0.212829, 14.584965, -3.909344, 0.585122], 84823.0),
+        ([950.0, 70.0], 0.907837, 1.016687, [-1.003628, -0.229588, 23.497749, -6.262525, 1.344301], 98552.0),
+    ];
+    for ([direct, diffuse], sine, distance, parameters, lux) in rows {
+        let position = SunPosition { altitude: f64::asin(sine), azimuth: 0.0, distance };
+        let state = SkyState::new(&position, direct, diffuse);
+        let LuminanceShape { a, b, c, d, e, .. } = state.shape();
+        for (found, expected) in [a, b, c, d, e].into_iter().zip(parameters) {
+            assert!((found - expected).abs() < 5e-6, "{state:?}: {found}, expected {expected}");
+        }
+        // The luminance is printed with four digits.
+        assert!((state.efficacies(2.0)[0] * direct - lux).abs() <= 5e-4 * lux, "{state:?}");
+    }
 }
 
 #[test]
