@@ -52,6 +52,11 @@ pub enum PunctualLight {
 }
 
 impl PunctualLight {
+    /// Returns a directional light with parallel rays.
+    pub fn parallel(direction: Vec3, illuminance: Vec3) -> Self {
+        Self::Directional { direction, illuminance, half_angle: 0.0 }
+    }
+
     /// Returns the luminous opening from whose faces the light shines; `None` if it shines from a point or from far
     /// away.
     pub fn opening(&self, distributions: &[Arc<Luminaire>]) -> Option<Opening> {

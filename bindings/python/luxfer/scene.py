@@ -236,8 +236,8 @@ class Scene(Handle):
 
     def set_sky(self, **params: Unpack[SkyParams]) -> SkyReport:
         """Sets a sky as the environment, and the sun as a directional light: model "cie" with cie_type 1 to 16, or
-        "perez"; unit "lux" or "watts" of direct_normal and diffuse_horizontal. The default is the overcast sky of type 1
-        with 10,000 lx. sun_position() and Weather.sky() give settings for it.
+        "perez"; unit "lux" or "watts" of direct_normal and diffuse_horizontal. The default is the overcast sky of type
+        1 with 10,000 lx. sun_position() and Weather.sky() give settings for it.
 
         >>> scene = Scene(context)
         >>> sky = scene.set_sky(cie_type=12, sun_altitude=0.7, direct_normal=60_000, diffuse_horizontal=15_000)
