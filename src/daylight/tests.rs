@@ -210,7 +210,11 @@ fn the_perez_sky_has_the_parameters_of_gendaylit() {
         let state = SkyState::new(&position, direct, diffuse);
         let LuminanceShape { a, b, c, d, e, .. } = state.shape();
         for (found, expected) in [a, b, c, d, e].into_iter().zip(parameters) {
-            assert!((found - expected).abs() < 5e-6, "{state:?}: {found}, expected {expected}");
+            // gendaylit prints the sun with six digits and computes in single precision.
+            assert!(
+                (found - expected).abs() < 1e-6 * (1.0 + expected.abs()),
+                "{state:?}: {found}, expected {expected}"
+            );
         }
         // The luminance is printed with four digits.
         assert!((state.efficacies(2.0)[0] * direct - lux).abs() <= 5e-4 * lux, "{state:?}");
