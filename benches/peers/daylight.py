@@ -120,7 +120,7 @@ def free_planes(all_skies: dict[str, tuple[str, dict[str, object]]], folder: str
     worst = 0.0
     points = np.array([(0, 0, 0, *normal) for normal in PLANES.values()], float)
     for name, (sky, settings) in all_skies.items():
-        theirs, _ = radiance(without_sun(sky) + DOME, points, "-ab 1 -ad 65536 -as 0 -aa 0 -lw 0", folder)
+        theirs, _ = radiance(without_sun(sky) + DOME, points, "-ab 1 -ad 65536 -as 0 -aa 0 -lr 8 -lw 1e-9", folder)
         scene = luxfer.Scene(CONTEXT)
         scene.add_material()
         scene.add_mesh([[0, -9, 0], [1, -9, 0], [0, -9, 1]], [[0, 1, 2]])
@@ -184,7 +184,7 @@ def window(all_skies: dict[str, tuple[str, dict[str, object]]], folder: str) -> 
         begun = time.process_time()
         ours = luxes(scene, 4096, 8, 6, **grid).reshape(-1)
         spent = time.process_time() - begun
-        quality = "-ab 8 -ad 2048 -as 0 -aa 0 -lw 1e-4 -lr 12 -dj 0.7 -dt 0 -dc 1"
+        quality = "-ab 30 -ad 512 -as 0 -aa 0 -lr -30 -lw 1e-3 -dj 0.7 -dt 0 -dc 1"
         theirs, seconds = radiance(sky + DOME + ground + text, points, quality, folder)
         rms = math.sqrt(np.mean((ours / theirs - 1) ** 2))
         print(

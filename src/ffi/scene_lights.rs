@@ -57,7 +57,7 @@ pub struct luxfer_light_params {
     pub angular_diameter: f32,
 }
 
-versioned!(luxfer_light_params, [56, 60], {
+versioned!(luxfer_light_params, [60], {
     Self {
         struct_size: 60,
         kind: LUXFER_LIGHT_POINT,
