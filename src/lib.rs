@@ -12,8 +12,8 @@
 //! [`plan`] chooses settings for a target error or time: the settings of `relight` and `render`, or the settings of
 //! `stylize`. `ffi` is the C boundary, and the only module that deals with C. Both pipelines use these modules:
 //! [`accel`] (ray queries), [`scene`] (description, glTF), [`render`] (light transport), `patch` (nearest-neighbour
-//! fields), [`image`], [`geometry`], [`photometry`] (colour temperature, glare, luminaire files), `network` (ONNX
-//! files). `tests/layering.rs` checks the dependencies between modules.
+//! fields), [`image`], [`geometry`], [`photometry`] (colour temperature, glare, luminaire files), [`daylight`]
+//! (sun, skies, weather files), `network` (ONNX files). `tests/layering.rs` checks the dependencies between modules.
 //!
 //! Every stage has the same interface: `Params` with defaults, ranges and units; an input; an output with an estimate
 //! of its own error; and a function that runs the stage. The function takes a [`job::Job`], which reports progress and
@@ -54,6 +54,7 @@
 )]
 
 pub mod accel;
+pub mod daylight;
 pub mod error;
 pub mod exec;
 pub mod geometry;

@@ -209,9 +209,11 @@ fn every_params_struct_takes_its_own_size_and_no_other() {
         LUXFER_STRUCT_MERGE_PARAMS: luxfer_merge_params;
         LUXFER_STRUCT_GONIO_PARAMS: luxfer_gonio_params;
         LUXFER_STRUCT_GLARE_PARAMS: luxfer_glare_params;
+        LUXFER_STRUCT_SUN_PARAMS: luxfer_sun_params;
+        LUXFER_STRUCT_SKY_PARAMS: luxfer_sky_params;
     }
     let mut room = [0xffu8; 4200];
-    for unknown in [-1, 32, i32::MAX] {
+    for unknown in [-1, 34, i32::MAX] {
         assert_eq!(unsafe { luxfer_init(unknown, room.as_mut_ptr().cast(), 4096) }, LUXFER_INVALID_ARGUMENT);
     }
 }

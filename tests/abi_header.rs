@@ -105,6 +105,8 @@ const PARTS: &[Part] = &[
             "glare",
             "gonio",
             "false_colour",
+            "daylight",
+            "weather",
             "design",
             "pendants",
         ],
@@ -160,7 +162,8 @@ const DEPRECATED: &str = r"/**
 ";
 
 /// Structs that callers pass in arrays. They have no size field, so their layout must never change.
-const ELEMENTS: &[&str] = &["luxfer_ray", "luxfer_hit", "luxfer_observer", "luxfer_observer_glare"];
+const ELEMENTS: &[&str] =
+    &["luxfer_ray", "luxfer_hit", "luxfer_observer", "luxfer_observer_glare", "luxfer_weather_hour"];
 
 #[test]
 fn the_headers_are_what_the_sources_say() {
@@ -616,7 +619,8 @@ layouts! {
     luxfer_mesh_info: struct_size material vertex_count triangle_count has_normals uv_sets has_colours reserved;
     luxfer_texture_use: struct_size texture uv_set wrap_u wrap_v transform;
     luxfer_demo_photo_params: struct_size width height samples seed;
-    luxfer_light_params: struct_size kind position direction intensity inner_angle outer_angle reserved;
+    luxfer_light_params: struct_size kind position direction intensity inner_angle outer_angle reserved
+        angular_diameter;
     luxfer_luminaire_params: struct_size shape flux position axis c0 colour;
     luxfer_features_params: struct_size near_plane far_plane normal_radius;
     luxfer_features_report: struct_size depth_source depth_confidence replaced_pixels;
@@ -664,6 +668,15 @@ layouts! {
     luxfer_glare_params: struct_size projection fov_y threshold vertical_illuminance;
     luxfer_glare_report: struct_size sources ugr background threshold solid_angle unseen_lights reserved dgp
         vertical_illuminance dgp_low_light;
+    luxfer_sun_params: struct_size year month day hour latitude longitude;
+    luxfer_sun_position: struct_size reserved altitude azimuth distance;
+    luxfer_sky_params: struct_size model cie_type unit sun_altitude sun_azimuth sun_distance direct_normal
+        diffuse_horizontal zenith_luminance dew_point ground_reflectance sky_kelvin sun_kelvin north rows;
+    luxfer_sky_report: struct_size sun direct_normal diffuse_horizontal zenith_luminance ground_luminance clearness
+        brightness;
+    luxfer_weather_report: struct_size hours latitude longitude time_zone elevation;
+    luxfer_weather_hour: year month day reserved hour dew_point direct_normal diffuse_horizontal
+        direct_normal_illuminance diffuse_horizontal_illuminance;
     luxfer_false_colour_params: struct_size scale unit bar minimum maximum;
     luxfer_mixture: struct_size in_gamut colour delta_e;
     luxfer_temperature_fit: struct_size reserved kelvin luminance achieved delta_e;

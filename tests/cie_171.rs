@@ -152,7 +152,11 @@ fn case_5_6_light_reflection_over_diffuse_surfaces() {
     let scene = || Scene {
         meshes: vec![quad(Vec3::new(1.5, 0.0, 1.5), Vec3::Z, Vec3::X, 0)],
         materials: vec![matt(albedo as f32, 0.0)],
-        lights: vec![PunctualLight::Directional { direction: -Vec3::Y, illuminance: Vec3::splat(sun as f32) }],
+        lights: vec![PunctualLight::Directional {
+            direction: -Vec3::Y,
+            illuminance: Vec3::splat(sun as f32),
+            half_angle: 0.0,
+        }],
         ..Scene::default()
     };
     for (place, normal) in [
@@ -176,7 +180,11 @@ fn case_5_7_diffuse_reflection_with_internal_obstructions() {
             quad(Vec3::new(screen as f32, 0.0, -50.0), Vec3::Y * high as f32, Vec3::Z * 100.0, 1),
         ],
         materials: vec![matt(albedo as f32, 0.0), matt(0.0, 0.0)],
-        lights: vec![PunctualLight::Directional { direction: -Vec3::Y, illuminance: Vec3::splat(sun as f32) }],
+        lights: vec![PunctualLight::Directional {
+            direction: -Vec3::Y,
+            illuminance: Vec3::splat(sun as f32),
+            half_angle: 0.0,
+        }],
         ..Scene::default()
     };
     let place = grid(Vec3::new(1.0, 2.0, 0.0), Vec3::X * 3.0, Vec3::Z * 2.0, -Vec3::Y);

@@ -28,6 +28,7 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("geometry", &["error", "maths", "rng"]),
     ("network", &["error", "job", "exec", "simd", "maths", "image"]),
     ("photometry", &["error", "maths", "image"]),
+    ("daylight", &["error", "maths", "image", "photometry"]),
     ("accel", &["simd", "error", "job", "exec", "maths", "image"]),
     ("scene", &["simd", "error", "warning", "job", "exec", "maths", "rng", "image", "geometry", "photometry"]),
     ("render", &["simd", "error", "job", "exec", "maths", "rng", "image", "geometry", "photometry", "accel", "scene"]),

@@ -230,6 +230,12 @@ typedef int32_t luxfer_struct_type;
 /** The luxfer_glare_params. */
 #define LUXFER_STRUCT_GLARE_PARAMS 31
 
+/** The luxfer_sun_params. */
+#define LUXFER_STRUCT_SUN_PARAMS 32
+
+/** The luxfer_sky_params. */
+#define LUXFER_STRUCT_SKY_PARAMS 33
+
 /**
  * Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
  * struct. If the program was built with an older header, in which the struct is smaller, only the fields of that

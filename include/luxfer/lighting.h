@@ -1081,6 +1081,254 @@ luxfer_status luxfer_image_false_colour(luxfer_image *image,
                                         luxfer_image **shown);
 
 /* ==================================================================================================================
+ * Daylight
+ *
+ * The sun's position, and skies as the environment of a scene: the standard skies of CIE S 011 and the all-weather sky
+ * of Perez et al. These calls are synchronous: they do their work before they return.
+ * ================================================================================================================== */
+
+/** A place on the Earth and a time. Fill it with luxfer_sun_params_init. */
+typedef struct luxfer_sun_params {
+    /** sizeof(luxfer_sun_params), set by luxfer_sun_params_init. */
+    uint32_t struct_size;
+    /** Year in the Gregorian calendar, in [1600, 2500]; default 2000. */
+    int32_t year;
+    /** Month, in [1, 12]; default 1. */
+    uint32_t month;
+    /** Day of the month, from 1 to the number of its days; default 1. */
+    uint32_t day;
+    /**
+     * Hours of universal time (UTC) since the midnight with which the date begins, in [-24, 48]; default 12. For a
+     * local time it is the local hour minus the zone, such as 14.5 - 2 for half past two in a zone two hours ahead.
+     */
+    double hour;
+    /** Latitude in degrees, in [-90, 90], positive to the north; default 0. */
+    double latitude;
+    /** Longitude in degrees, in [-180, 180], positive to the east; default 0. */
+    double longitude;
+} luxfer_sun_params;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_sun_params_init(luxfer_sun_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_SUN_PARAMS, place, size);
+}
+
+/** The position of the sun. */
+typedef struct luxfer_sun_position {
+    /** sizeof(luxfer_sun_position), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Reserved; always 0. */
+    uint32_t reserved;
+    /** Angle of the sun's centre above the horizon in radians, in [-pi / 2, pi / 2], without refraction. */
+    double altitude;
+    /** Angle in radians from north over east, in [0, 2 pi). */
+    double azimuth;
+    /** Distance of the sun in astronomical units. */
+    double distance;
+} luxfer_sun_position;
+
+/** A model of the sky's relative luminance: a LUXFER_SKY_ value. */
+typedef int32_t luxfer_sky_model;
+
+/** The unit of the light of sun and sky: a LUXFER_DAYLIGHT_ value. */
+typedef int32_t luxfer_daylight_unit;
+
+/**
+ * A state of sun and sky. Fill it with luxfer_sky_params_init. The default is the overcast sky of type 1 with 10,000
+ * lx: 100 lx indoors are then a daylight factor of 1 %.
+ */
+typedef struct luxfer_sky_params {
+    /** sizeof(luxfer_sky_params), set by luxfer_sky_params_init. */
+    uint32_t struct_size;
+    /** Model of the sky: a LUXFER_SKY_ value; default LUXFER_SKY_CIE. */
+    luxfer_sky_model model;
+    /**
+     * Type of a standard sky: 1 to 15 as in CIE S 011 (1 overcast, 5 uniform, 12 clear), or 16 for the traditional
+     * overcast sky, whose zenith is three times as bright as its horizon; default 1.
+     */
+    uint32_t cie_type;
+    /** Unit of direct_normal and diffuse_horizontal: a LUXFER_DAYLIGHT_ value; default LUXFER_DAYLIGHT_LUX. */
+    luxfer_daylight_unit unit;
+    /**
+     * Altitude of the sun in radians, in [-pi / 2, pi / 2], such as luxfer_sun_get_position gives it; default pi / 4.
+     * A sun at 0 or below gives no light, and the sky has the shape that it has with the sun at 0.
+     */
+    double sun_altitude;
+    /** Azimuth of the sun in radians, from north over east, in [-2 pi, 2 pi]; default pi, the south. */
+    double sun_azimuth;
+    /**
+     * Distance of the sun in astronomical units, in [0.9, 1.1]; default 1. It counts for the Perez sky, for
+     * irradiances and for the size of the sun's disc.
+     */
+    double sun_distance;
+    /** Light of the sun on a plane that faces it, in [0, 1e6] lx or [0, 2000] W/m²; default 0. */
+    double direct_normal;
+    /** Light of the sky, without the sun, on a level plane, in [0, 1e6] lx or [0, 2000] W/m²; default 10000. */
+    double diffuse_horizontal;
+    /**
+     * Luminance of the zenith in cd/m², in [0, 1e6]. If it is not 0, it replaces diffuse_horizontal. It must be 0 for
+     * the Perez sky. Default 0.
+     */
+    double zenith_luminance;
+    /**
+     * Dew point at the ground in degrees Celsius, in [-90, 60], from which the efficacies of irradiances estimate the
+     * water in the air; default 11, which stands for 2.0 cm of water.
+     */
+    double dew_point;
+    /**
+     * Reflectance of the ground, in [0, 1]; default 0.2. Below the horizon the environment has the uniform luminance
+     * of a diffuse ground with this reflectance under the unobstructed sun and sky.
+     */
+    double ground_reflectance;
+    /** Colour temperature of the sky in kelvin, in [1000, 20000]; 0, the default: neutral white. */
+    double sky_kelvin;
+    /** Colour temperature of the sun in kelvin, in [1000, 20000]; 0, the default: neutral white. */
+    double sun_kelvin;
+    /**
+     * Direction of north in the scene, of which only the part perpendicular to y counts; default (0, 0, -1), so that
+     * east is +x.
+     */
+    float north[3];
+    /**
+     * Rows of the environment image, an even number in [16, 4096]; default 256. The image has twice as many columns.
+     */
+    uint32_t rows;
+} luxfer_sky_params;
+
+/** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
+static inline luxfer_status luxfer_sky_params_init(luxfer_sky_params *place, size_t size) {
+    return luxfer_init(LUXFER_STRUCT_SKY_PARAMS, place, size);
+}
+
+/** The light of a sky. */
+typedef struct luxfer_sky_report {
+    /** sizeof(luxfer_sky_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Index of the sun among the punctual lights of the scene; LUXFER_NONE if the scene has no sun. */
+    uint32_t sun;
+    /** Illuminance in lux of a plane that faces the sun, by the sun alone; 0 if the sun is not above the horizon. */
+    double direct_normal;
+    /** Illuminance in lux of a level plane by the sky alone. */
+    double diffuse_horizontal;
+    /** Luminance of the zenith in cd/m². */
+    double zenith_luminance;
+    /** Luminance of the ground in cd/m². */
+    double ground_luminance;
+    /** Clearness epsilon of Perez et al., from 1, an overcast sky, to 12, a clear one. */
+    double clearness;
+    /** Brightness delta of Perez et al., in [0.01, 0.6]. */
+    double brightness;
+} luxfer_sky_report;
+
+/** A standard sky of CIE S 011 / ISO 15469. */
+#define LUXFER_SKY_CIE 0
+
+/** The all-weather sky of Perez et al. (1993). */
+#define LUXFER_SKY_PEREZ 1
+
+/** Illuminance in lux. */
+#define LUXFER_DAYLIGHT_LUX 0
+
+/** Irradiance in W/m², converted to lux by the luminous efficacies of Perez et al. (1990). */
+#define LUXFER_DAYLIGHT_WATTS 1
+
+/**
+ * Computes the position of the sun, to within 0.01 degrees. size is sizeof *position. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range, or the month does not have the day.
+ */
+luxfer_status luxfer_sun_get_position(luxfer_context *context,
+                                      const luxfer_sun_params *params,
+                                      luxfer_sun_position *position,
+                                      size_t size);
+
+/**
+ * Sets the sky and the sun of a scene. The sky and the ground become the environment of the scene, an image that
+ * replaces an earlier environment. The sun becomes a directional light with an angular diameter of 0.533 degrees at a
+ * distance of 1: it casts soft shadows, and pictures and mirrors show it. A later call changes this light; if it gives
+ * no sun, the light stays, with an illuminance of 0, so that the other lights keep their indices.
+ * luxfer_scene_set_environment replaces the sky, but not the sun. Files of luxfer_scene_export contain the sun as a
+ * light without a size, and no sky. params may be NULL for the defaults.
+ * report may be NULL; size is sizeof *report. Any thread.
+ * LUXFER_INVALID_ARGUMENT if a value is out of range, or a setting does not suit the model; LUXFER_OUT_OF_MEMORY
+ * beyond the memory budget.
+ */
+luxfer_status luxfer_scene_set_sky(luxfer_scene *scene,
+                                   const luxfer_sky_params *params,
+                                   luxfer_sky_report *report,
+                                   size_t size);
+
+/* ==================================================================================================================
+ * Weather files
+ *
+ * Reads the weather files of EnergyPlus (EPW): a place, and the light of sun and sky in each hour of a year. The call
+ * is synchronous: it does its work before it returns.
+ * ================================================================================================================== */
+
+/**
+ * The weather of an hour; values that the file does not have are NaN. Callers pass arrays of this struct, so its size
+ * and fields never change in later versions.
+ */
+typedef struct luxfer_weather_hour {
+    /** Year; in files of typical years, months may have different years. */
+    int32_t year;
+    /** Month, in [1, 12]. */
+    uint32_t month;
+    /** Day of the month, in [1, 31], in the time zone of the file. */
+    uint32_t day;
+    /** Reserved; always 0. */
+    uint32_t reserved;
+    /**
+     * Middle of the hour in universal time, in hours since the midnight with which year, month and day begin; negative
+     * or above 24 if universal time has another date. It suits luxfer_sun_params.
+     */
+    double hour;
+    /** Dew point in degrees Celsius. */
+    double dew_point;
+    /** Direct normal irradiance in W/m², the mean of the hour. */
+    double direct_normal;
+    /** Diffuse horizontal irradiance in W/m², the mean of the hour. */
+    double diffuse_horizontal;
+    /** Direct normal illuminance in lux, the mean of the hour. */
+    double direct_normal_illuminance;
+    /** Diffuse horizontal illuminance in lux, the mean of the hour. */
+    double diffuse_horizontal_illuminance;
+} luxfer_weather_hour;
+
+/** The place of a weather file. */
+typedef struct luxfer_weather_report {
+    /** sizeof(luxfer_weather_report), set by the function that fills the struct. */
+    uint32_t struct_size;
+    /** Number of hours in the file. */
+    uint32_t hours;
+    /** Latitude in degrees, positive to the north. */
+    double latitude;
+    /** Longitude in degrees, positive to the east. */
+    double longitude;
+    /** Hours by which the file's time is ahead of universal time. */
+    double time_zone;
+    /** Height above the sea in metres. */
+    double elevation;
+} luxfer_weather_report;
+
+/**
+ * Reads a weather file of EnergyPlus (.epw) with one row per hour; path is UTF-8. The array hours receives count
+ * hours, in the order of the file, from the hour of index first on; hour_stride is the distance between its elements
+ * in bytes; 0: sizeof(luxfer_weather_hour). With a count of 0, hours may be NULL and only *report is filled. size is
+ * sizeof *report. A file has at most 8784 hours. Any thread.
+ * LUXFER_IO if the file cannot be read; LUXFER_FORMAT if it is malformed, lacks an hour or ends early (the message
+ * names the line); LUXFER_UNSUPPORTED if it has several rows per hour; LUXFER_NOT_FOUND if the file ends before the
+ * last of the hours; LUXFER_INVALID_ARGUMENT if the stride is too small.
+ */
+luxfer_status luxfer_weather_read(luxfer_context *context,
+                                  const char *path,
+                                  size_t first,
+                                  size_t count,
+                                  luxfer_weather_hour *hours,
+                                  size_t hour_stride,
+                                  luxfer_weather_report *report,
+                                  size_t size);
+
+/* ==================================================================================================================
  * Lighting design
  *
  * Helps to realise a computed light with real luminaires. The functions find the drive levels at which LEDs mix a

@@ -691,7 +691,7 @@ luxfer_status luxfer_distribution_get_intensity(luxfer_distribution *distributio
 /* ==================================================================================================================
  * Lights of a scene
  *
- * Adds punctual lights to a scene: point lights, spot lights, directional lights (parallel light from far away) and
+ * Adds punctual lights to a scene: point lights, spot lights, directional lights (light from infinitely far away) and
  * luminaires with a measured intensity distribution. Area lights are surfaces whose material emits.
  * ================================================================================================================== */
 
@@ -726,6 +726,12 @@ typedef struct luxfer_light_params {
     float outer_angle;
     /** Must be 0. */
     uint32_t reserved;
+    /**
+     * Angle in radians under which the disc of a directional light is seen, in [0, pi / 2]; for the sun it is 0.0093.
+     * The disc has uniform luminance; it casts soft shadows, and pictures and mirrors show it. 0, the default:
+     * parallel rays.
+     */
+    float angular_diameter;
 } luxfer_light_params;
 
 /** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
@@ -771,7 +777,7 @@ static inline luxfer_status luxfer_luminaire_params_init(luxfer_luminaire_params
 /** A spot light: it shines into a cone. */
 #define LUXFER_LIGHT_SPOT 1
 
-/** A directional light: it shines from infinitely far away, with parallel rays. */
+/** A directional light: it shines from infinitely far away, with parallel rays or as a disc. */
 #define LUXFER_LIGHT_DIRECTIONAL 2
 
 /**

@@ -5,6 +5,7 @@
 //! argument the compiler checks; programs in other languages call luxfer_init.
 
 use super::context::luxfer_context_params;
+use super::daylight::{luxfer_sky_params, luxfer_sun_params};
 use super::demo_photo::luxfer_demo_photo_params;
 use super::emission::luxfer_emission_params;
 use super::exposures::luxfer_merge_params;
@@ -106,6 +107,10 @@ pub const LUXFER_STRUCT_MERGE_PARAMS: luxfer_struct_type = 29;
 pub const LUXFER_STRUCT_GONIO_PARAMS: luxfer_struct_type = 30;
 /// The struct luxfer_glare_params.
 pub const LUXFER_STRUCT_GLARE_PARAMS: luxfer_struct_type = 31;
+/// The struct luxfer_sun_params.
+pub const LUXFER_STRUCT_SUN_PARAMS: luxfer_struct_type = 32;
+/// The struct luxfer_sky_params.
+pub const LUXFER_STRUCT_SKY_PARAMS: luxfer_struct_type = 33;
 
 /// Fills the struct at place with the defaults of struct_type, a LUXFER_STRUCT_ value. The argument size is sizeof the
 /// struct. If the program was built with an older header, in which the struct is smaller, only the fields of that
@@ -154,6 +159,8 @@ pub unsafe extern "C" fn luxfer_init(
         LUXFER_STRUCT_MERGE_PARAMS => params::init::<luxfer_merge_params>(place.cast(), size),
         LUXFER_STRUCT_GONIO_PARAMS => params::init::<luxfer_gonio_params>(place.cast(), size),
         LUXFER_STRUCT_GLARE_PARAMS => params::init::<luxfer_glare_params>(place.cast(), size),
+        LUXFER_STRUCT_SUN_PARAMS => params::init::<luxfer_sun_params>(place.cast(), size),
+        LUXFER_STRUCT_SKY_PARAMS => params::init::<luxfer_sky_params>(place.cast(), size),
         other => Err(Error::argument(format!("the type of the struct is {other}; it must be a LUXFER_STRUCT_ value"))),
     })
 }

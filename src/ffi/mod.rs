@@ -30,6 +30,7 @@ mod stage;
 
 mod candidates;
 mod context;
+mod daylight;
 mod demo;
 mod demo_photo;
 mod depth;
@@ -97,9 +98,11 @@ mod transfer_results;
 mod version;
 mod warning;
 mod warning_create;
+mod weather;
 
 pub use candidates::*;
 pub use context::*;
+pub use daylight::*;
 pub use demo::*;
 pub use demo_photo::*;
 pub use depth::*;
@@ -163,3 +166,4 @@ pub use transfer_results::*;
 pub use version::*;
 pub use warning::*;
 pub use warning_create::*;
+pub use weather::*;

@@ -120,6 +120,21 @@ struct SceneState {
     /// The scene prepared for tracing; `None` if no call has prepared it since the last change.
     world: Option<Arc<World>>,
     charges: Vec<Charge>,
+    /// The charge for the environment, which a later environment replaces.
+    environment: Option<Charge>,
+}
+
+impl SceneState {
+    fn new(scene: Arc<Scene>, charges: Vec<Charge>) -> Self {
+        Self { scene, world: None, charges, environment: None }
+    }
+
+    /// Returns the scene for a change.
+    fn changed(&mut self) -> &mut Scene {
+        // Drop the world, which shares the scene: otherwise the change would copy the scene.
+        self.world = None;
+        Arc::make_mut(&mut self.scene)
+    }
 }
 
 impl Owned for SceneObject {
@@ -138,7 +153,7 @@ impl SceneObject {
     /// Creates the object of a scene and counts the size of the scene in the memory budget.
     pub(super) fn new(context: &Arc<Context>, scene: Arc<Scene>) -> Result<Arc<Self>> {
         let charges = vec![context.charge(cost(&scene))?];
-        Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(SceneState { scene, world: None, charges }) }))
+        Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(SceneState::new(scene, charges)) }))
     }
 
     /// Reads a scene from a file. Each part of the scene is counted in the memory budget before its memory is
@@ -149,13 +164,13 @@ impl SceneObject {
     ) -> Result<Arc<Self>> {
         let charges = Charges { context, monitor: context.monitor(), kept: RefCell::default() };
         let scene = Arc::new(read(&charges)?);
-        let state = SceneState { scene, world: None, charges: charges.kept.into_inner() };
+        let state = SceneState::new(scene, charges.kept.into_inner());
         Ok(Arc::new(Self { context: context.clone(), state: Mutex::new(state) }))
     }
 
     /// Creates the object of a scene that a stage has made; its size is not counted in the memory budget.
     pub(super) fn of_result(context: &Arc<Context>, scene: Arc<Scene>) -> Arc<Self> {
-        let state = SceneState { scene, world: None, charges: Vec::new() };
+        let state = SceneState::new(scene, Vec::new());
         Arc::new(Self { context: context.clone(), state: Mutex::new(state) })
     }
 
@@ -169,13 +184,20 @@ impl SceneObject {
     pub(super) fn change<T>(&self, bytes: u64, change: impl FnOnce(&mut Scene) -> Result<T>) -> Result<T> {
         let charge = self.context.charge(bytes)?;
         let state = &mut *lock(&self.state);
-        // Drop the world, which shares the scene: otherwise the change would copy the scene.
-        state.world = None;
-        let result = change(Arc::make_mut(&mut state.scene))?;
+        let result = change(state.changed())?;
         if bytes > 0 {
             state.charges.push(charge);
         }
         Ok(result)
+    }
+
+    /// Changes the scene and its environment. The charge of the new environment replaces that of the environment
+    /// before.
+    pub(super) fn change_environment<T>(&self, charge: Charge, change: impl FnOnce(&mut Scene) -> T) -> T {
+        let state = &mut *lock(&self.state);
+        let result = change(state.changed());
+        state.environment = Some(charge);
+        result
     }
 
     /// Returns the prepared form of `scene` if an earlier call has prepared it for tracing.
@@ -333,10 +355,9 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
     enter(scene, |object| {
         let strength = read_colour(rgb)?;
         let Some(image) = Pixels::optional(&object.context, image, "image")? else {
-            return object.change(0, |scene| {
-                scene.environment = Some(Environment::Constant(strength));
-                Ok(())
-            });
+            let charge = object.context.charge(0)?;
+            object.change_environment(charge, |scene| scene.environment = Some(Environment::Constant(strength)));
+            return Ok(());
         };
         if let Some(v) = image.image().data.iter().find(|v| !(v.is_finite() && **v >= 0.0)) {
             return Err(Error::argument(format!("a sample of the image is {v}; it must be finite and not negative")));
@@ -349,10 +370,9 @@ pub unsafe extern "C" fn luxfer_scene_set_environment(
             return Err(Error::argument("the image times its factors is not finite; lower them"));
         }
         let bytes = (image.data.len() * size_of::<f32>()) as u64;
-        object.change(bytes, |scene| {
-            scene.environment = Some(Environment::Image(image));
-            Ok(())
-        })
+        let charge = object.context.charge(bytes)?;
+        object.change_environment(charge, |scene| scene.environment = Some(Environment::Image(image)));
+        Ok(())
     })
 }
 

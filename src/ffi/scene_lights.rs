@@ -1,6 +1,6 @@
 //! Lights of a scene
 //!
-//! Adds punctual lights to a scene: point lights, spot lights, directional lights (parallel light from far away) and
+//! Adds punctual lights to a scene: point lights, spot lights, directional lights (light from infinitely far away) and
 //! luminaires with a measured intensity distribution. Area lights are surfaces whose material emits.
 
 use super::distribution::luxfer_distribution;
@@ -24,7 +24,7 @@ pub type luxfer_light_kind = i32;
 pub const LUXFER_LIGHT_POINT: luxfer_light_kind = 0;
 /// A spot light: it shines into a cone.
 pub const LUXFER_LIGHT_SPOT: luxfer_light_kind = 1;
-/// A directional light: it shines from infinitely far away, with parallel rays.
+/// A directional light: it shines from infinitely far away, with parallel rays or as a disc.
 pub const LUXFER_LIGHT_DIRECTIONAL: luxfer_light_kind = 2;
 
 /// A punctual light. Fill it with luxfer_light_params_init.
@@ -51,11 +51,15 @@ pub struct luxfer_light_params {
     pub outer_angle: f32,
     /// Must be 0.
     pub reserved: u32,
+    /// Angle in radians under which the disc of a directional light is seen, in [0, pi / 2]; for the sun it is 0.0093.
+    /// The disc has uniform luminance; it casts soft shadows, and pictures and mirrors show it. 0, the default:
+    /// parallel rays.
+    pub angular_diameter: f32,
 }
 
-versioned!(luxfer_light_params, [56], {
+versioned!(luxfer_light_params, [60], {
     Self {
-        struct_size: 56,
+        struct_size: 60,
         kind: LUXFER_LIGHT_POINT,
         position: [0.0; 3],
         direction: [0.0, -1.0, 0.0],
@@ -63,6 +67,7 @@ versioned!(luxfer_light_params, [56], {
         inner_angle: 0.0,
         outer_angle: std::f32::consts::FRAC_PI_4,
         reserved: 0,
+        angular_diameter: 0.0,
     }
 });
 
@@ -82,7 +87,10 @@ impl luxfer_light_params {
                 let inner_angle = check_range("light.inner_angle", self.inner_angle, 0.0, outer_angle)?;
                 Ok(PunctualLight::Spot { position, direction, intensity, inner_angle, outer_angle })
             }
-            LUXFER_LIGHT_DIRECTIONAL => Ok(PunctualLight::Directional { direction, illuminance: intensity }),
+            LUXFER_LIGHT_DIRECTIONAL => {
+                let angle = check_range("light.angular_diameter", self.angular_diameter, 0.0, FRAC_PI_2)?;
+                Ok(PunctualLight::Directional { direction, illuminance: intensity, half_angle: angle / 2.0 })
+            }
             other => Err(Error::argument(format!("light.kind is {other}; it must be a LUXFER_LIGHT_ value"))),
         }
     }

@@ -32,7 +32,7 @@ pub mod presets;
 mod sum;
 mod symmetry;
 pub mod temperature;
-mod text_lines;
+pub mod text_lines;
 #[cfg(feature = "xml-luminaires")]
 pub mod tm33;
 mod type_b;

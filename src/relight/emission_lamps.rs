@@ -301,7 +301,7 @@ mod tests {
         assert_eq!(lamps.rows(0, 1.0).1, 2);
         // Punctual lights are grouped by kind, not by intensity.
         let point = |intensity: f32| PunctualLight::Point { position: Vec3::X, intensity: Vec3::splat(intensity) };
-        let sun = PunctualLight::Directional { direction: Vec3::X, illuminance: Vec3::ONE };
+        let sun = PunctualLight::Directional { direction: Vec3::X, illuminance: Vec3::ONE, half_angle: 0.0 };
         let lights = Scene { lights: vec![sun, point(1.0), point(9.0)], ..Scene::default() };
         assert_eq!(EmissionLamps::of_lights(&lights).unwrap().types(), (vec![1, 0, 0], 2));
         assert!(EmissionLamps::of_lights(&scene).is_err());

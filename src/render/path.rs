@@ -185,6 +185,7 @@ pub(super) fn intersect<O: Observer>(
 ) -> Option<(Vertex, f32)> {
     let Some(hit) = world.closest(&segment.ray, segment.from, || sampler.ray_seed()) else {
         add_environment(world, segment, observer);
+        add_discs(world, segment, observer);
         return None;
     };
     let vertex = Vertex::of_hit(world, &hit);
@@ -366,6 +367,18 @@ fn add_environment<O: Observer>(world: &World, segment: &PathSegment, observer: 
     let mis_weight =
         segment.mis.map_or(1.0, |(_, pdf)| power_heuristic(pdf, world.lights().environment_pdf(segment.ray.direction)));
     observer.add(LightSource::Environment, segment.throughput * mis_weight, emission, Strategy::BsdfSample);
+}
+
+/// Adds the discs of directional lights that a segment without a hit meets. Only the eye and mirrors see them in this
+/// way: at all other vertices, light samples find their light.
+fn add_discs<O: Observer>(world: &World, segment: &PathSegment, observer: &mut O) {
+    if segment.mis.is_some() {
+        return;
+    }
+    for (index, disc) in world.lights().discs().filter(|(_, disc)| disc.contains(segment.ray.direction)) {
+        let importance = segment.throughput * disc.luminance_factor();
+        observer.add(LightSource::Punctual(index), importance, disc.illuminance, Strategy::BsdfSample);
+    }
 }
 
 /// Returns the reciprocal of each channel; 0 for channels that are not positive.

@@ -11,8 +11,18 @@ impl Scene {
     /// scenes collide with probability 2^-64. The hash offers no protection against forgery, and it may change between
     /// versions of the library.
     pub fn fingerprint(&self) -> u64 {
-        let Self { origin, meshes, materials, textures, lights, distributions, environment, cameras: _, unrendered: _ } =
-            self;
+        let Self {
+            origin,
+            meshes,
+            materials,
+            textures,
+            lights,
+            distributions,
+            environment,
+            sun: _,
+            cameras: _,
+            unrendered: _,
+        } = self;
         let mut digest = Digest(0);
         for Mesh { name, material, positions, normals, uvs: [first, second], colours, triangles } in meshes {
             digest.text(&(name, material));

@@ -33,8 +33,11 @@ pub enum PunctualLight {
     /// intensity stays the same. From there it falls to 0 at `outer_angle`, as glTF prescribes. Both angles are in
     /// radians, from the axis to the side of a cone.
     Spot { position: Vec3, direction: Vec3, intensity: Vec3, inner_angle: f32, outer_angle: f32 },
-    /// Illuminance per channel in lux on a surface perpendicular to `direction`, along which the light travels.
-    Directional { direction: Vec3, illuminance: Vec3 },
+    /// A light infinitely far away. `illuminance` per channel in lux is that of a surface perpendicular to `direction`,
+    /// along which the light travels. The light is a uniform disc, such as the sun's, which is seen under the angle
+    /// 2 `half_angle` in radians, in `[0, π / 4]` for `half_angle`. At 0 its rays are parallel, and neither the eye nor
+    /// mirrors see it.
+    Directional { direction: Vec3, illuminance: Vec3, half_angle: f32 },
     /// A measured luminaire. It shines from the faces of its luminous opening ([`PunctualLight::opening`]), whose
     /// centre is `position`. Without an opening, it shines from the point `position`.
     ///
@@ -49,6 +52,11 @@ pub enum PunctualLight {
 }
 
 impl PunctualLight {
+    /// Returns a directional light with parallel rays.
+    pub fn parallel(direction: Vec3, illuminance: Vec3) -> Self {
+        Self::Directional { direction, illuminance, half_angle: 0.0 }
+    }
+
     /// Returns the luminous opening from whose faces the light shines; `None` if it shines from a point or from far
     /// away.
     pub fn opening(&self, distributions: &[Arc<Luminaire>]) -> Option<Opening> {

@@ -5,7 +5,7 @@ use super::{AlphaMode, Camera, Environment, Material, Mesh, PunctualLight, Scene
 use crate::error::{Error, ErrorKind, Result, check_range};
 use crate::image::Image;
 use glam::{Mat3, Vec3, Vec4};
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use std::fmt::Display;
 
 /// Largest absolute coordinate of a position, in metres. A product of two coordinates is then at most 1e30. The sum of
@@ -113,9 +113,10 @@ impl Scene {
                 check_range("outer_angle", outer_angle, 0.0, FRAC_PI_2)?;
                 check_range("inner_angle", inner_angle, 0.0, outer_angle).map(|_| ())
             }
-            PunctualLight::Directional { direction, illuminance } => {
+            PunctualLight::Directional { direction, illuminance, half_angle } => {
                 check_unit("direction", direction)?;
-                check_light("illuminance", illuminance)
+                check_light("illuminance", illuminance)?;
+                check_range("half_angle", half_angle, 0.0, FRAC_PI_4).map(|_| ())
             }
             PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point: _ } => {
                 check_place(|| "position", position)?;
@@ -261,9 +262,14 @@ mod tests {
             meshes: vec![mesh],
             materials: vec![material],
             textures: vec![Texture::new("Grain", image)],
-            lights: vec![PunctualLight::Directional { direction: Vec3::NEG_Y, illuminance: Vec3::ONE }],
+            lights: vec![PunctualLight::Directional {
+                direction: Vec3::NEG_Y,
+                illuminance: Vec3::ONE,
+                half_angle: 0.0,
+            }],
             distributions: vec![Arc::new(Luminaire::lambertian("Panel", 1.0, [0.0; 3]))],
             environment: Some(Environment::Constant(Vec3::ONE)),
+            sun: None,
             cameras: vec![Camera::look_at(Vec3::ONE, Vec3::ZERO, 1.0)],
             unrendered: Vec::new(),
         }

@@ -246,7 +246,11 @@ mod tests {
     fn lights_that_no_picture_shows_are_listed_with_their_places() {
         let mut scene = room(3.0);
         let position = Vec3::new(1.0, 2.5, 0.0);
-        scene.lights.push(PunctualLight::Directional { direction: Vec3::NEG_Y, illuminance: Vec3::ONE });
+        scene.lights.push(PunctualLight::Directional {
+            direction: Vec3::NEG_Y,
+            illuminance: Vec3::ONE,
+            half_angle: 0.0,
+        });
         scene.lights.push(PunctualLight::Point { position, intensity: Vec3::ZERO });
         assert_eq!(scene.warnings(), []);
         scene.lights.push(PunctualLight::Point { position, intensity: Vec3::ONE });

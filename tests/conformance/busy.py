@@ -105,6 +105,7 @@ def times(calls: list[Call], is_busy: bool) -> list[float]:
     with tempfile.TemporaryDirectory() as folder:
         before = os.getcwd()
         os.chdir(folder)  # programs write files
+        scenarios.write_files(folder)
         journal = os.open("journal", os.O_RDWR | os.O_CREAT)
         try:
             player = Busy(journal, is_busy)

@@ -37,6 +37,7 @@ class Failure:
 def play(programs: list[list[Call]], threads: int = 1, hang: float = HANG) -> Failure | None:
     with tempfile.TemporaryDirectory() as folder:
         file, journal = Path(folder, "programs"), Path(folder, "journal")
+        scenarios.write_files(folder)
         with open(file, "w") as out:
             for calls in programs:
                 out.write(json.dumps({"threads": threads, "calls": calls}) + "\n")

@@ -3,10 +3,18 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 from script import SETTINGS, Argument, Call, Script, array, handles, report, struct, view
 
 ROOM = ["room", 0x5A]
+
+
+def write_files(folder: str | Path) -> None:
+    """Writes the files that the programs read: a weather file of one day."""
+    head = ["LOCATION,Here,-,-,-,-,48,11,1,500"] + [f"{i}," for i in range(2, 8)] + ["DATA PERIODS,1,1,Data,Sunday,1/1,1/1"]
+    rows = [f"2026,1,1,{hour},60,-,1,2,50,95000,0,0,0,100,200,50,0,0,0,0" for hour in range(1, 25)]
+    Path(folder, "day.epw").write_text("\n".join(head + rows))
 
 
 class Scenario(Script):
@@ -318,6 +326,9 @@ def photometry() -> Scenario:
     s.call("preset_get_count", s.context, ROOM)
     s.call("preset_get", s.context, 0, *report("preset"))
     file = b"IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 3 1 1 2 0.5 0.5 0\n1 1 50\n0 45 90\n0\n100 80 0\n"
+    s.call("sun_get_position", s.context, struct("sun_params", year=2026, month=6, day=21, latitude=48.0), *report("sun_position"))
+    s.call("scene_set_sky", s.make("scene_create", s.context), struct("sky_params", cie_type=12, rows=16), *report("sky_report"))
+    s.call("weather_read", s.context, "day.epw", 0, 24, ROOM, 0, *report("weather_report"))
     lamp = s.make("distribution_load_memory", s.context, file, len(file), 0)
     s.references(lamp)
     s.call("distribution_save", lamp, "a.ldt")

@@ -121,6 +121,8 @@ void initialisers_fill_their_structs() {
     check_initialiser(luxfer_importance_params_init);
     check_initialiser(luxfer_placement_params_init);
     check_initialiser(luxfer_gonio_params_init);
+    check_initialiser(luxfer_sun_params_init);
+    check_initialiser(luxfer_sky_params_init);
     check_initialiser(luxfer_false_colour_params_init);
     check_initialiser(luxfer_pendants_params_init);
     check_initialiser(luxfer_guides_params_init);

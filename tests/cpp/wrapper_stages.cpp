@@ -317,6 +317,34 @@ void pendants(const Context &context) {
     CHECK(measured.report.flux > 0 && measured.distribution.report().planes == 4);
 }
 
+// The sun of a summer's noon, a clear sky with it, and a weather file that is missing.
+void daylight(const Context &context) {
+    luxfer::SunParams noon;
+    noon.year = 2026;
+    noon.month = 6;
+    noon.day = 21;
+    noon.hour = 11.25;
+    noon.latitude = 48.1;
+    noon.longitude = 11.6;
+    const luxfer_sun_position sun = luxfer::sun_position(context, noon);
+    CHECK(std::fabs(sun.altitude - 1.1403) < 0.001);
+    luxfer::SkyParams clear;
+    clear.cie_type = 12;
+    clear.sun_altitude = sun.altitude;
+    clear.sun_azimuth = sun.azimuth;
+    clear.direct_normal = 80000;
+    const Scene scene = Scene::demo(context, LUXFER_DEMO_TARGET_ROOM);
+    const luxfer_sky_report sky = luxfer::set_sky(scene, clear);
+    CHECK(sky.sun + 1 == scene.counts().lights && sky.direct_normal == 80000 && sky.zenith_luminance > 0);
+    luxfer_status missing = LUXFER_OK;
+    try {
+        luxfer::read_weather(context, "absent.epw", 0, 1);
+    } catch (const luxfer::Error &error) {
+        missing = error.status();
+    }
+    CHECK_STATUS(missing, LUXFER_IO);
+}
+
 luxfer::Guides guides_of(const Context &context, luxfer_demo which) {
     const auto guides = copied(luxfer::Guides::create(context));
     guides.set_scene(Scene::demo(context, which));
@@ -384,6 +412,7 @@ int main() {
     lighting_transfer(context);
     light(context);
     pendants(context);
+    daylight(context);
     plans(context);
     stylisation(context);
     return check::summary("wrapper_stages");

@@ -12,6 +12,8 @@ using LampsParams = Params<luxfer_lamps_params, LUXFER_STRUCT_LAMPS_PARAMS>;
 using ImportanceParams = Params<luxfer_importance_params, LUXFER_STRUCT_IMPORTANCE_PARAMS>;
 using GonioParams = Params<luxfer_gonio_params, LUXFER_STRUCT_GONIO_PARAMS>;
 using GlareParams = Params<luxfer_glare_params, LUXFER_STRUCT_GLARE_PARAMS>;
+using SunParams = Params<luxfer_sun_params, LUXFER_STRUCT_SUN_PARAMS>;
+using SkyParams = Params<luxfer_sky_params, LUXFER_STRUCT_SKY_PARAMS>;
 using FalseColourParams = Params<luxfer_false_colour_params, LUXFER_STRUCT_FALSE_COLOUR_PARAMS>;
 using LuminaireParams = Params<luxfer_luminaire_params, LUXFER_STRUCT_LUMINAIRE_PARAMS>;
 using PendantsParams = Params<luxfer_pendants_params, LUXFER_STRUCT_PENDANTS_PARAMS>;
@@ -167,6 +169,35 @@ inline Result<std::uint32_t> add_luminaire(const Scene &scene, const Distributio
     std::uint32_t index = 0;
     const luxfer_status status = luxfer_scene_add_luminaire(scene.get(), distribution.get(), &params, &index);
     return detail::to_result(scene.context().get(), status, index);
+}
+
+/// The position of the sun at a place and a time.
+inline Result<luxfer_sun_position> sun_position(const Context &context, const luxfer_sun_params &params) {
+    luxfer_sun_position position = {};
+    const luxfer_status status = luxfer_sun_get_position(context.get(), &params, &position, sizeof position);
+    return detail::to_result(context.get(), status, position);
+}
+
+/// Sets the sky and the sun of a scene.
+inline Result<luxfer_sky_report> set_sky(const Scene &scene, const luxfer_sky_params &params = SkyParams()) {
+    luxfer_sky_report report = {};
+    const luxfer_status status = luxfer_scene_set_sky(scene.get(), &params, &report, sizeof report);
+    return detail::to_result(scene.context().get(), status, report);
+}
+
+/// The place and the hours of a weather file.
+struct Weather {
+    luxfer_weather_report place = {};
+    std::vector<luxfer_weather_hour> hours;
+};
+
+/// Reads a weather file of EnergyPlus (.epw): count hours from index first on.
+inline Result<Weather> read_weather(const Context &context, Text path, std::size_t first, std::size_t count) {
+    Weather weather;
+    weather.hours.resize(count);
+    const luxfer_status status = luxfer_weather_read(context.get(), path.get(), first, count, weather.hours.data(), 0,
+                                                     &weather.place, sizeof weather.place);
+    return detail::to_result(context.get(), status, std::move(weather));
 }
 
 /// A distribution measured from meshes, its errors, and the place of its luminaire.

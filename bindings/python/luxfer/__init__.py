@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from ._library import library
     from .candidate import SurfaceCandidate
     from .context import Context
+    from .daylight import Weather, sun_position
     from .demo import DemoPhoto
     from .emission import Emission
     from .errors import Error
@@ -76,6 +77,7 @@ __all__ = [
     "SurfaceCandidate",
     "Task",
     "Transfer",
+    "Weather",
     "abi",
     "align_sheet",
     "colour_of_temperature",
@@ -91,6 +93,7 @@ __all__ = [
     "mix_primaries",
     "presets",
     "print_sheet",
+    "sun_position",
     "types",
 ]
 
@@ -100,6 +103,8 @@ _MODULES = {
     "library": "_library",
     "Error": "errors",
     "SurfaceCandidate": "candidate",
+    "Weather": "daylight",
+    "sun_position": "daylight",
     "DemoPhoto": "demo",
     "homography": "image",
     "merge_exposures": "image",

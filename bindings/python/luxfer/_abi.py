@@ -58,6 +58,8 @@ LUXFER_STRUCT_PENDANTS_PARAMS = 28
 LUXFER_STRUCT_MERGE_PARAMS = 29
 LUXFER_STRUCT_GONIO_PARAMS = 30
 LUXFER_STRUCT_GLARE_PARAMS = 31
+LUXFER_STRUCT_SUN_PARAMS = 32
+LUXFER_STRUCT_SKY_PARAMS = 33
 LUXFER_VIEW_BOTTOM_UP = 1
 LUXFER_SAMPLE_U8 = 0
 LUXFER_SAMPLE_U16 = 1
@@ -270,6 +272,10 @@ LUXFER_SCALE_LINEAR = 0
 LUXFER_SCALE_LOGARITHMIC = 1
 LUXFER_UNIT_LUMINANCE = 0
 LUXFER_UNIT_ILLUMINANCE = 1
+LUXFER_SKY_CIE = 0
+LUXFER_SKY_PEREZ = 1
+LUXFER_DAYLIGHT_LUX = 0
+LUXFER_DAYLIGHT_WATTS = 1
 LUXFER_DOUBT_SIZE = 1
 LUXFER_DOUBT_KIND = 2
 LUXFER_DOUBT_CLIPPED = 4
@@ -674,6 +680,7 @@ class luxfer_light_params(Structure):
         ("inner_angle", c_float),
         ("outer_angle", c_float),
         ("reserved", c_uint32),
+        ("angular_diameter", c_float),
     ]
     enumerations: dict[str, type] = {"kind": types.LightKind}
     struct_type = LUXFER_STRUCT_LIGHT_PARAMS
@@ -1420,6 +1427,109 @@ class luxfer_false_colour_params(Structure):
     struct_type = LUXFER_STRUCT_FALSE_COLOUR_PARAMS
 
 
+class luxfer_sun_params(Structure):
+    """A place on the Earth and a time."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("year", c_int32),
+        ("month", c_uint32),
+        ("day", c_uint32),
+        ("hour", c_double),
+        ("latitude", c_double),
+        ("longitude", c_double),
+    ]
+    struct_type = LUXFER_STRUCT_SUN_PARAMS
+
+
+class luxfer_sun_position(Structure):
+    """The position of the sun."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("altitude", c_double),
+        ("azimuth", c_double),
+        ("distance", c_double),
+    ]
+    result = types.SunPosition
+
+
+class luxfer_sky_params(Structure):
+    """A state of sun and sky. The default is the overcast sky of type 1 with 10,000 lx: 100 lx indoors are then
+    a daylight factor of 1 %."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("model", c_int32),
+        ("cie_type", c_uint32),
+        ("unit", c_int32),
+        ("sun_altitude", c_double),
+        ("sun_azimuth", c_double),
+        ("sun_distance", c_double),
+        ("direct_normal", c_double),
+        ("diffuse_horizontal", c_double),
+        ("zenith_luminance", c_double),
+        ("dew_point", c_double),
+        ("ground_reflectance", c_double),
+        ("sky_kelvin", c_double),
+        ("sun_kelvin", c_double),
+        ("north", c_float * 3),
+        ("rows", c_uint32),
+    ]
+    enumerations: dict[str, type] = {"model": types.SkyModel, "unit": types.DaylightUnit}
+    struct_type = LUXFER_STRUCT_SKY_PARAMS
+
+
+class luxfer_sky_report(Structure):
+    """The light of a sky."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("sun", c_uint32),
+        ("direct_normal", c_double),
+        ("diffuse_horizontal", c_double),
+        ("zenith_luminance", c_double),
+        ("ground_luminance", c_double),
+        ("clearness", c_double),
+        ("brightness", c_double),
+    ]
+    result = types.SkyReport
+
+
+class luxfer_weather_hour(Structure):
+    """The weather of an hour; values that the file does not have are NaN. Callers pass arrays of this struct,
+    so its size and fields never change in later versions."""
+
+    _fields_ = [
+        ("year", c_int32),
+        ("month", c_uint32),
+        ("day", c_uint32),
+        ("reserved", c_uint32),
+        ("hour", c_double),
+        ("dew_point", c_double),
+        ("direct_normal", c_double),
+        ("diffuse_horizontal", c_double),
+        ("direct_normal_illuminance", c_double),
+        ("diffuse_horizontal_illuminance", c_double),
+    ]
+    result = types.WeatherHour
+
+
+class luxfer_weather_report(Structure):
+    """The place of a weather file."""
+
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("hours", c_uint32),
+        ("latitude", c_double),
+        ("longitude", c_double),
+        ("time_zone", c_double),
+        ("elevation", c_double),
+    ]
+    result = types.WeatherReport
+
+
 class luxfer_mixture(Structure):
     """A colour mixed from LED primaries: the result of luxfer_mix_primaries."""
 
@@ -1857,6 +1967,9 @@ FUNCTIONS: dict[str, tuple[Any, list[tuple[str, Any]]]] = {
     "luxfer_scene_get_glare": (c_int32, [("scene", POINTER(luxfer_scene)), ("observers", POINTER(luxfer_observer)), ("count", c_size_t), ("observer_stride", c_size_t), ("samples", c_uint32), ("seed", c_uint64), ("ratings", POINTER(luxfer_observer_glare)), ("rating_stride", c_size_t)]),
     "luxfer_scene_get_distribution": (c_int32, [("scene", POINTER(luxfer_scene)), ("meshes", POINTER(c_uint32)), ("count", c_size_t), ("params", POINTER(luxfer_gonio_params)), ("distribution", POINTER(POINTER(luxfer_distribution))), ("report", POINTER(luxfer_gonio_report)), ("size", c_size_t)]),
     "luxfer_image_false_colour": (c_int32, [("image", POINTER(luxfer_image)), ("params", POINTER(luxfer_false_colour_params)), ("shown", POINTER(POINTER(luxfer_image)))]),
+    "luxfer_sun_get_position": (c_int32, [("context", POINTER(luxfer_context)), ("params", POINTER(luxfer_sun_params)), ("position", POINTER(luxfer_sun_position)), ("size", c_size_t)]),
+    "luxfer_scene_set_sky": (c_int32, [("scene", POINTER(luxfer_scene)), ("params", POINTER(luxfer_sky_params)), ("report", POINTER(luxfer_sky_report)), ("size", c_size_t)]),
+    "luxfer_weather_read": (c_int32, [("context", POINTER(luxfer_context)), ("path", c_char_p), ("first", c_size_t), ("count", c_size_t), ("hours", POINTER(luxfer_weather_hour)), ("hour_stride", c_size_t), ("report", POINTER(luxfer_weather_report)), ("size", c_size_t)]),
     "luxfer_mix_primaries": (c_int32, [("context", POINTER(luxfer_context)), ("primaries", POINTER(c_double)), ("count", c_size_t), ("max_drive", c_double), ("rgb", POINTER(c_double)), ("drives", POINTER(c_double)), ("mixture", POINTER(luxfer_mixture)), ("size", c_size_t)]),
     "luxfer_fit_temperature": (c_int32, [("context", POINTER(luxfer_context)), ("response", POINTER(c_double)), ("background", POINTER(c_double)), ("target", POINTER(c_double)), ("fit", POINTER(luxfer_temperature_fit)), ("size", c_size_t)]),
     "luxfer_preset_get_count": (c_int32, [("context", POINTER(luxfer_context)), ("count", POINTER(c_uint32))]),

@@ -22,6 +22,7 @@ from .types import (
     Pendant,
     Requirements,
     SceneCounts,
+    SkyReport,
     Surface,
     TextureRole,
     TextureUse,
@@ -36,7 +37,7 @@ if TYPE_CHECKING:
     from .context import Context
     from .image import ImageLike
     from .photometry import Distribution
-    from .types import GonioParams, LightParams, LuminaireParams, SceneLoadParams
+    from .types import GonioParams, LightParams, LuminaireParams, SceneLoadParams, SkyParams
 
 #: The entry that intersect() returns for each ray; a miss has t = inf and mesh = triangle = 2**32 - 1.
 HIT = np.dtype([("t", "f4"), ("mesh", "u4"), ("triangle", "u4"), ("u", "f4"), ("v", "f4")])
@@ -232,6 +233,19 @@ class Scene(Handle):
         multiplied by colour."""
         sky = None if image is None else image_of(self._context, image)
         self._call("set_environment", sky, _params.rgb(colour))
+
+    def set_sky(self, **params: Unpack[SkyParams]) -> SkyReport:
+        """Sets a sky as the environment, and the sun as a directional light: model "cie" with cie_type 1 to 16, or
+        "perez"; unit "lux" or "watts" of direct_normal and diffuse_horizontal. The default is the overcast sky of type
+        1 with 10,000 lx. sun_position() and Weather.sky() give settings for it.
+
+        >>> scene = Scene(context)
+        >>> sky = scene.set_sky(cie_type=12, sun_altitude=0.7, direct_normal=60_000, diffuse_horizontal=15_000)
+        >>> round(sky.diffuse_horizontal), scene.counts.lights
+        (15000, 1)
+        """
+        settings = _params.fill(_abi.luxfer_sky_params, params, [])
+        return cast(SkyReport, self._read("set_sky", _abi.luxfer_sky_report, settings))
 
     def find_surface(self, name: str) -> Surface:
         """Finds the planar surface of an object or material that faces the room."""

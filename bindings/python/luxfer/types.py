@@ -209,7 +209,7 @@ class LightKind(IntEnum):
     SPOT = 1
     """A spot light: it shines into a cone."""
     DIRECTIONAL = 2
-    """A directional light: it shines from infinitely far away, with parallel rays."""
+    """A directional light: it shines from infinitely far away, with parallel rays or as a disc."""
 
 
 class VertexAttribute(IntEnum):
@@ -798,6 +798,24 @@ class Unit(IntEnum):
     """Luminance in cd/m²."""
     ILLUMINANCE = 1
     """Illuminance in lux."""
+
+
+class SkyModel(IntEnum):
+    """A model of the sky's relative luminance."""
+
+    CIE = 0
+    """A standard sky of CIE S 011 / ISO 15469."""
+    PEREZ = 1
+    """The all-weather sky of Perez et al. (1993)."""
+
+
+class DaylightUnit(IntEnum):
+    """The unit of the light of sun and sky."""
+
+    LUX = 0
+    """Illuminance in lux."""
+    WATTS = 1
+    """Irradiance in W/m², converted to lux by the luminous efficacies of Perez et al. (1990)."""
 
 
 class Known(IntEnum):
@@ -1437,6 +1455,10 @@ class LightParams(TypedDict, total=False):
     outer_angle: float
     """Half angle of the whole cone of a spot light, in radians, in (0, pi / 2]; default pi / 4. From
     inner_angle to outer_angle, the intensity falls smoothly to 0, as in glTF."""
+    angular_diameter: float
+    """Angle in radians under which the disc of a directional light is seen, in [0, pi / 2]; for the sun it is
+    0.0093. The disc has uniform luminance; it casts soft shadows, and pictures and mirrors show it. 0, the
+    default: parallel rays."""
 
 
 class LuminaireParams(TypedDict, total=False):
@@ -2533,6 +2555,144 @@ class FalseColourParams(TypedDict, total=False):
     maximum: float
     """Value that gets the lightest colour, greater than minimum; 0, the default: the largest finite value of
     the image."""
+
+
+class SunParams(TypedDict, total=False):
+    """A place on the Earth and a time."""
+
+    year: int
+    """Year in the Gregorian calendar, in [1600, 2500]; default 2000."""
+    month: int
+    """Month, in [1, 12]; default 1."""
+    day: int
+    """Day of the month, from 1 to the number of its days; default 1."""
+    hour: float
+    """Hours of universal time (UTC) since the midnight with which the date begins, in [-24, 48]; default 12.
+    For a local time it is the local hour minus the zone, such as 14.5 - 2 for half past two in a zone two hours
+    ahead."""
+    latitude: float
+    """Latitude in degrees, in [-90, 90], positive to the north; default 0."""
+    longitude: float
+    """Longitude in degrees, in [-180, 180], positive to the east; default 0."""
+
+
+@dataclass(frozen=True)
+class SunPosition:
+    """The position of the sun."""
+
+    altitude: float
+    """Angle of the sun's centre above the horizon in radians, in [-pi / 2, pi / 2], without refraction."""
+    azimuth: float
+    """Angle in radians from north over east, in [0, 2 pi)."""
+    distance: float
+    """Distance of the sun in astronomical units."""
+
+
+class SkyParams(TypedDict, total=False):
+    """A state of sun and sky. The default is the overcast sky of type 1 with 10,000 lx: 100 lx indoors are then
+    a daylight factor of 1 %."""
+
+    model: SkyModel | str | int
+    """Model of the sky: SkyModel; default SkyModel.CIE."""
+    cie_type: int
+    """Type of a standard sky: 1 to 15 as in CIE S 011 (1 overcast, 5 uniform, 12 clear), or 16 for the
+    traditional overcast sky, whose zenith is three times as bright as its horizon; default 1."""
+    unit: DaylightUnit | str | int
+    """Unit of direct_normal and diffuse_horizontal: DaylightUnit; default DaylightUnit.LUX."""
+    sun_altitude: float
+    """Altitude of the sun in radians, in [-pi / 2, pi / 2], such as luxfer_sun_get_position gives it; default
+    pi / 4. A sun at 0 or below gives no light, and the sky has the shape that it has with the sun at 0."""
+    sun_azimuth: float
+    """Azimuth of the sun in radians, from north over east, in [-2 pi, 2 pi]; default pi, the south."""
+    sun_distance: float
+    """Distance of the sun in astronomical units, in [0.9, 1.1]; default 1. It counts for the Perez sky, for
+    irradiances and for the size of the sun's disc."""
+    direct_normal: float
+    """Light of the sun on a plane that faces it, in [0, 1e6] lx or [0, 2000] W/m²; default 0."""
+    diffuse_horizontal: float
+    """Light of the sky, without the sun, on a level plane, in [0, 1e6] lx or [0, 2000] W/m²; default 10000."""
+    zenith_luminance: float
+    """Luminance of the zenith in cd/m², in [0, 1e6]. If it is not 0, it replaces diffuse_horizontal. It must be
+    0 for the Perez sky. Default 0."""
+    dew_point: float
+    """Dew point at the ground in degrees Celsius, in [-90, 60], from which the efficacies of irradiances
+    estimate the water in the air; default 11, which stands for 2.0 cm of water."""
+    ground_reflectance: float
+    """Reflectance of the ground, in [0, 1]; default 0.2. Below the horizon the environment has the uniform
+    luminance of a diffuse ground with this reflectance under the unobstructed sun and sky."""
+    sky_kelvin: float
+    """Colour temperature of the sky in kelvin, in [1000, 20000]; 0, the default: neutral white."""
+    sun_kelvin: float
+    """Colour temperature of the sun in kelvin, in [1000, 20000]; 0, the default: neutral white."""
+    north: Sequence[float]
+    """Direction of north in the scene, of which only the part perpendicular to y counts; default (0, 0, -1), so
+    that east is +x."""
+    rows: int
+    """Rows of the environment image, an even number in [16, 4096]; default 256. The image has twice as many
+    columns."""
+
+
+@dataclass(frozen=True)
+class SkyReport:
+    """The light of a sky."""
+
+    sun: int
+    """Index of the sun among the punctual lights of the scene; LUXFER_NONE if the scene has no sun."""
+    direct_normal: float
+    """Illuminance in lux of a plane that faces the sun, by the sun alone; 0 if the sun is not above the
+    horizon."""
+    diffuse_horizontal: float
+    """Illuminance in lux of a level plane by the sky alone."""
+    zenith_luminance: float
+    """Luminance of the zenith in cd/m²."""
+    ground_luminance: float
+    """Luminance of the ground in cd/m²."""
+    clearness: float
+    """Clearness epsilon of Perez et al., from 1, an overcast sky, to 12, a clear one."""
+    brightness: float
+    """Brightness delta of Perez et al., in [0.01, 0.6]."""
+
+
+@dataclass(frozen=True)
+class WeatherHour:
+    """The weather of an hour; values that the file does not have are NaN. Callers pass arrays of this struct,
+    so its size and fields never change in later versions."""
+
+    year: int
+    """Year; in files of typical years, months may have different years."""
+    month: int
+    """Month, in [1, 12]."""
+    day: int
+    """Day of the month, in [1, 31], in the time zone of the file."""
+    hour: float
+    """Middle of the hour in universal time, in hours since the midnight with which year, month and day begin;
+    negative or above 24 if universal time has another date. It suits SunParams."""
+    dew_point: float
+    """Dew point in degrees Celsius."""
+    direct_normal: float
+    """Direct normal irradiance in W/m², the mean of the hour."""
+    diffuse_horizontal: float
+    """Diffuse horizontal irradiance in W/m², the mean of the hour."""
+    direct_normal_illuminance: float
+    """Direct normal illuminance in lux, the mean of the hour."""
+    diffuse_horizontal_illuminance: float
+    """Diffuse horizontal illuminance in lux, the mean of the hour."""
+
+
+@dataclass(frozen=True)
+class WeatherReport:
+    """The place of a weather file."""
+
+    hours: int
+    """Number of hours in the file."""
+    latitude: float
+    """Latitude in degrees, positive to the north."""
+    longitude: float
+    """Longitude in degrees, positive to the east."""
+    time_zone: float
+    """Hours by which the file's time is ahead of universal time."""
+    elevation: float
+    """Height above the sea in metres."""
 
 
 @dataclass(frozen=True)

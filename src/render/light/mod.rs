@@ -10,6 +10,7 @@
 //! Half of the probability is divided among the groups in proportion to their power, and half is divided equally.
 //! Power alone would ignore occlusion by walls and could leave a group with too few samples.
 
+mod disc;
 mod lamp_visibility;
 mod learning;
 mod luminous_surfaces;
@@ -28,6 +29,7 @@ use super::environment::{self, EnvironmentSampler};
 use crate::error::Result;
 use crate::maths;
 use crate::scene::{PunctualLight, Scene};
+use disc::Disc;
 use glam::{DVec3, Vec2, Vec3};
 use lamp_visibility::Split;
 use luminous_surfaces::LuminousSurfaces;
@@ -43,6 +45,8 @@ use survey::{Progress, Survey, UNCOUNTED};
 pub struct Lights {
     pub emitters: Arc<Emitters>,
     punctual: Arc<Vec<Punctual>>,
+    /// Indices of the directional lights that are seen as discs, in the scene's list of punctual lights.
+    discs: Arc<[u32]>,
     environment: Option<Arc<EnvironmentSampler>>,
     inventory: Arc<Inventory>,
     /// Selects among all lights.
@@ -75,7 +79,7 @@ pub struct LightSample {
     pub emission: Vec3,
     /// The divisor of the light sample: `emission / pdf` estimates the illuminance on a surface perpendicular to
     /// `direction`. It is the solid-angle pdf for surfaces and the environment, pmf × squared distance for punctual
-    /// lights at a finite distance, and the pmf for directional lights.
+    /// lights at a finite distance, and for directional lights the pmf × cosine of the angle to the disc's centre.
     pub pdf: f32,
     /// Solid-angle pdf for MIS against BSDF samples; `None` for punctual lights, which no BSDF sample can hit.
     pub mis_pdf: Option<f32>,
@@ -115,9 +119,13 @@ impl Lights {
         let power = mean * PI * 4.0 * PI * r2;
         let piece_flux = emitters.power;
         let inventory = Inventory { bounds, pieces: count, piece_flux, near, flux, is_far, environment: power };
+        let punctual: Vec<_> = lights.iter().map(|light| Punctual::new(light, &scene.distributions)).collect();
+        let is_disc = |light: &Punctual| matches!(light, Punctual::Far(disc) if disc.is_visible());
+        let discs = (0..).zip(&punctual).filter(|(_, light)| is_disc(light)).map(|(index, _)| index).collect();
         Ok(Self {
             emitters: Arc::new(emitters),
-            punctual: Arc::new(lights.iter().map(|light| Punctual::new(light, &scene.distributions)).collect()),
+            punctual: Arc::new(punctual),
+            discs,
             environment,
             all: Arc::new(Selector::of_all(&inventory)?),
             inventory: Arc::new(inventory),
@@ -183,13 +191,13 @@ impl Lights {
             let surveyed = self.count_drawn(counts, light);
             match light.checked_sub(self.inventory.pieces) {
                 None => self.sample_surface(scene, receiver, (light, surveyed), pmf, (rest, v)),
-                Some(i) => self.sample_punctual(receiver, (self.inventory.near[i], surveyed), pmf),
+                Some(i) => self.sample_punctual(receiver, (self.inventory.near[i], surveyed), pmf, (rest, v)),
             }
         } else if u < near + directional {
-            let index = selector.directional.sample(rescaled(near, directional)).0;
+            let (index, rest) = selector.directional.sample(rescaled(near, directional));
             let pmf = chosen * directional * selector.directional.pmf(index);
             let surveyed = self.count_drawn(counts, self.inventory.directional(index));
-            self.sample_punctual(receiver, (index as u32, surveyed), pmf as f32)
+            self.sample_punctual(receiver, (index as u32, surveyed), pmf as f32, (rest, v))
         } else if environment > 0.0 {
             let surveyed = self.count_drawn(counts, self.inventory.environment());
             let (direction, pdf) = self.environment.as_ref()?.sample(rescaled(near + directional, environment), v);
@@ -265,7 +273,13 @@ impl Lights {
         })
     }
 
-    fn sample_punctual(&self, receiver: &Receiver, (index, surveyed): (u32, u32), pmf: f32) -> Option<LightSample> {
+    fn sample_punctual(
+        &self,
+        receiver: &Receiver,
+        (index, surveyed): (u32, u32),
+        pmf: f32,
+        at: (f64, f32),
+    ) -> Option<LightSample> {
         let (direction, end, emission, pdf) = match &self.punctual[index as usize] {
             Punctual::Near { position, intensity, shape } => {
                 let offset = position - receiver.position;
@@ -274,7 +288,10 @@ impl Lights {
                 let factor = shape.factor(-direction);
                 (direction, Some(LightEnd::Point(*position)), intensity * factor, pmf * distance * distance)
             }
-            Punctual::Far { towards, illuminance } => (*towards, None, *illuminance, pmf),
+            Punctual::Far(disc) => {
+                let (direction, cosine) = disc.sample(at);
+                (direction, None, disc.illuminance, pmf * cosine)
+            }
         };
         let lights = pdf > 0.0 && direction.is_finite() && direction != Vec3::ZERO && emission != Vec3::ZERO;
         lights.then_some(LightSample {
@@ -306,6 +323,15 @@ impl Lights {
         };
         let pdf = pmf * self.emitters.area_pdf(piece, emitter, mean_channel(emission));
         to_solid_angle(pdf, self.emitters.emitters[emitter].normal.dot(direction), distance)
+    }
+
+    /// Returns the directional lights that are seen as discs, with their indices in the scene's list of punctual
+    /// lights. No BSDF sample of a non-specular surface needs them, because light samples find all of their light.
+    pub fn discs(&self) -> impl Iterator<Item = (u32, &Disc)> {
+        self.discs.iter().filter_map(|&index| match &self.punctual[index as usize] {
+            Punctual::Far(disc) => Some((index, disc)),
+            Punctual::Near { .. } => None,
+        })
     }
 
     /// Returns the solid-angle pdf with which [`Lights::sample`] draws a direction towards the environment.

@@ -1,6 +1,7 @@
 //! Punctual lights prepared for light sampling: points, spots, directional lights (`KHR_lights_punctual`) and measured
 //! luminaires.
 
+use super::disc::Disc;
 use crate::maths;
 use crate::photometry::Luminaire;
 use crate::render::bounds::{Bounds, CONE_MARGIN};
@@ -18,11 +19,8 @@ pub enum Punctual {
         intensity: Vec3,
         shape: IntensityDistribution,
     },
-    /// A directional light, infinitely far away; `towards` is the unit direction to the light.
-    Far {
-        towards: Vec3,
-        illuminance: Vec3,
-    },
+    /// A directional light, infinitely far away.
+    Far(Disc),
 }
 
 /// How the intensity of a light depends on the direction.
@@ -57,8 +55,8 @@ impl Punctual {
                     shape: IntensityDistribution::Cone(Cone { axis, outer, scale: 1.0 / (inner - outer).max(1e-4) }),
                 }
             }
-            PunctualLight::Directional { direction, illuminance } => {
-                Self::Far { towards: -direction.normalize_or_zero(), illuminance }
+            PunctualLight::Directional { direction, illuminance, half_angle } => {
+                Self::Far(Disc::new(-direction.normalize_or_zero(), illuminance, half_angle))
             }
             PunctualLight::Luminaire { position, axis, c0, colour, distribution, .. } => {
                 let shape =

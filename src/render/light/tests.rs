@@ -126,7 +126,7 @@ fn every_light() -> Scene {
                 inner_angle: 0.1,
                 outer_angle: 0.6,
             },
-            _ => PunctualLight::Directional { direction: -place(i).normalize(), illuminance: intensity(i) },
+            _ => PunctualLight::parallel(-place(i).normalize(), intensity(i)),
         })
         .collect();
     scene.distributions = vec![Arc::new(Luminaire::lambertian("panel", 4.0, [0.0; 3]))];

@@ -91,7 +91,7 @@ fn punctual_lights_follow_the_inverse_square_and_their_cones() {
     let position = Vec3::new(0.0, 3.0, 4.0);
     assert!(close(lit(PunctualLight::Point { position, intensity: Vec3::splat(500.0) }), 500.0 / 25.0 * 0.6));
     let direction = Vec3::new(0.0, -1.0, -1.0);
-    let sun = PunctualLight::Directional { direction, illuminance: Vec3::splat(1000.0) };
+    let sun = PunctualLight::Directional { direction, illuminance: Vec3::splat(1000.0), half_angle: 0.0 };
     assert!(close(lit(sun), 1000.0 * 0.5f64.sqrt()));
     let spot = |towards: Vec3| PunctualLight::Spot {
         position,
@@ -102,6 +102,50 @@ fn punctual_lights_follow_the_inverse_square_and_their_cones() {
     };
     assert!(close(lit(spot(Vec3::ZERO)), 500.0 / 25.0 * 0.6));
     assert_eq!(lit(spot(Vec3::new(0.0, 3.0, 0.0))), 0.0);
+}
+
+/// A disc lights a floor like a directional light. An edge through its centre hides half of its light. The eye sees its
+/// luminance E / (π sin² α), also by a mirror; it sees nothing beside it, and nothing of parallel rays.
+#[test]
+fn discs_light_and_are_seen_as_their_luminance_demands() {
+    let floor = Mesh::parallelogram(Vec3::new(-1.0, 0.0, -1.0), Vec3::Z * 2.0, Vec3::X * 2.0, 0);
+    let base = Scene { meshes: vec![floor.clone()], materials: vec![matt(0.0, 0.0)], ..Scene::default() };
+    let disc = |towards: Vec3, half_angle: f32| {
+        let direction = -towards.normalize();
+        PunctualLight::Directional { direction, illuminance: Vec3::splat(1000.0), half_angle }
+    };
+    for half_angle in [0.0, 0.00465, 0.3] {
+        let lit = Scene { lights: vec![disc(Vec3::new(0.4, 1.0, -0.3), half_angle)], ..base.clone() };
+        assert_close(&world(lit), &centre_of(0), 1000.0 / 1.25f64.sqrt());
+    }
+    let screen = Mesh::parallelogram(Vec3::new(0.0, 1.0, -9.0), Vec3::X * 9.0, Vec3::Z * 18.0, 0);
+    for half_angle in [0.00465, 0.3] {
+        let meshes = vec![floor.clone(), screen.clone()];
+        assert_close(
+            &world(Scene { meshes, lights: vec![disc(Vec3::Y, half_angle)], ..base.clone() }),
+            &centre_of(0),
+            500.0,
+        );
+    }
+
+    let seen = |meshes: Vec<Mesh>, half_angle: f32, origin: Vec3, direction: Vec3| {
+        let mirror = Material { metallic: 1.0, roughness: 0.0, ..Material::default() };
+        let lights = vec![disc(Vec3::Y, half_angle)];
+        let world = world(Scene { meshes, materials: vec![mirror], lights, ..Scene::default() });
+        let mut sum = ContributionSum(DVec3::ZERO);
+        let length = path::PathLength { max_bounces: 8, roulette_weight: None };
+        let ray = crate::accel::Ray::new(world.from_scene(origin), direction.normalize());
+        let (mut sampler, mut sink) = (sampler::Sampler::new(1, 0), path::Contributions(&mut sum));
+        path::trace(&world, ray, (0.5, 0.5), length, &mut sampler, &mut sink);
+        sum.0.x
+    };
+    let luminance = 1000.0 / (std::f64::consts::PI * 0.1f64.sin().powi(2));
+    let close = |value: f64| (value / luminance - 1.0).abs() < 1e-5;
+    assert!(close(seen(Vec::new(), 0.1, Vec3::ZERO, Vec3::new(0.09, 1.0, 0.0))));
+    assert_eq!(seen(Vec::new(), 0.1, Vec3::ZERO, Vec3::new(0.11, 1.0, 0.0)), 0.0);
+    assert_eq!(seen(Vec::new(), 0.1, Vec3::ZERO, Vec3::new(0.05, -1.0, 0.0)), 0.0);
+    assert_eq!(seen(Vec::new(), 0.0, Vec3::ZERO, Vec3::Y), 0.0);
+    assert!(close(seen(vec![floor.clone()], 0.1, Vec3::Y, Vec3::new(0.05, -1.0, 0.0))));
 }
 
 #[test]

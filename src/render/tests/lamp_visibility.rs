@@ -30,7 +30,11 @@ fn building() -> Scene {
         environment: Some(Environment::Constant(Vec3::splat(500.0))),
         lights: vec![
             PunctualLight::Point { position: Vec3::new(7.5, 1.0, 1.5), intensity: Vec3::splat(2000.0) },
-            PunctualLight::Directional { direction: Vec3::new(0.1, -1.0, 0.2), illuminance: Vec3::splat(5000.0) },
+            PunctualLight::Directional {
+                direction: Vec3::new(0.1, -1.0, 0.2),
+                illuminance: Vec3::splat(5000.0),
+                half_angle: 0.0,
+            },
         ],
         ..Scene::default()
     };

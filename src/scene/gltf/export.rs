@@ -163,7 +163,7 @@ impl Writer {
         let (kind, strength, position, direction) = match *light {
             PunctualLight::Point { position, intensity } => ("point", intensity, position, Vec3::NEG_Z),
             PunctualLight::Spot { position, direction, intensity, .. } => ("spot", intensity, position, direction),
-            PunctualLight::Directional { direction, illuminance } => {
+            PunctualLight::Directional { direction, illuminance, .. } => {
                 ("directional", illuminance, Vec3::ZERO, direction)
             }
             PunctualLight::Luminaire { position, axis, c0, colour, distribution, is_point } => {

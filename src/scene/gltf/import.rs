@@ -478,9 +478,7 @@ fn punctual(light: &Light, transform: DMat4) -> Result<PunctualLight> {
     };
     match light.type_ {
         Checked::Valid(Type::Point) => Ok(PunctualLight::Point { position, intensity: strength }),
-        Checked::Valid(Type::Directional) => {
-            Ok(PunctualLight::Directional { direction: direction()?, illuminance: strength })
-        }
+        Checked::Valid(Type::Directional) => Ok(PunctualLight::parallel(direction()?, strength)),
         Checked::Valid(Type::Spot) => {
             let spot = light.spot.as_ref().ok_or_else(|| Error::format("a spot light without cone angles"))?;
             Ok(PunctualLight::Spot {

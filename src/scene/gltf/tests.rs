@@ -52,7 +52,7 @@ fn lights() -> Vec<PunctualLight> {
     vec![
         PunctualLight::Point { position: Vec3::ONE, intensity: Vec3::new(300.0, 200.0, 100.0) },
         PunctualLight::Spot { position: Vec3::Y, direction, intensity: Vec3::ONE, inner_angle: 0.2, outer_angle: 0.5 },
-        PunctualLight::Directional { direction: -direction, illuminance: Vec3::splat(1000.0) },
+        PunctualLight::Directional { direction: -direction, illuminance: Vec3::splat(1000.0), half_angle: 0.0 },
     ]
 }
 
@@ -90,6 +90,7 @@ fn scene() -> Scene {
         lights: lights(),
         distributions: Vec::new(),
         environment: None,
+        sun: None,
         cameras: vec![Camera { name: "View".into(), ..camera }],
         unrendered: Vec::new(),
     }
