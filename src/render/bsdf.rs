@@ -65,11 +65,11 @@ pub struct Bsdf<'a> {
     /// Shading normal (`normal`) and geometric normal (`geometric`), both facing the viewer.
     normal: Vec3,
     geometric: Vec3,
-    layers: Layers<'a>,
+    layers: BsdfLayers<'a>,
 }
 
 /// The parts of a BSDF besides the diffuse layer.
-enum Layers<'a> {
+enum BsdfLayers<'a> {
     Diffuse,
     /// Layers above the diffuse one.
     Specular(SpecularLayers<'a>),
@@ -172,10 +172,10 @@ impl<'a> Bsdf<'a> {
         let diffuse = bsdf_params.diffuse;
         // Return early for diffuse surfaces, so that the unused layers are not copied.
         if !layered {
-            return Self { diffuse, normal, geometric, layers: Layers::Diffuse };
+            return Self { diffuse, normal, geometric, layers: BsdfLayers::Diffuse };
         }
         let layers = SpecularLayers::new(bsdf_params, normal, geometric.dot(wo), wo, table);
-        Self { diffuse, normal, geometric, layers: Layers::Specular(layers) }
+        Self { diffuse, normal, geometric, layers: BsdfLayers::Specular(layers) }
     }
 
     /// Builds the BSDF of a solid body's surface for a viewer in direction `wo`.
@@ -187,14 +187,14 @@ impl<'a> Bsdf<'a> {
         let wo = to_local(&[t, b, normal], wo);
         let dielectric = Dielectric::new(wo, interface.boundary.eta, interface.tint, alpha);
         let layers =
-            Layers::Boundary(BoundaryLayer { dielectric, tangents: [t, b], beyond: interface.boundary.beyond });
+            BsdfLayers::Boundary(BoundaryLayer { dielectric, tangents: [t, b], beyond: interface.boundary.beyond });
         Self { diffuse: Vec3::ZERO, normal, geometric: geometric * side, layers }
     }
 
     /// Returns the diffuse BSDF of a light meter. Its albedo is π, so the radiance that it reflects equals the
     /// irradiance that it receives.
     pub fn receiver(normal: Vec3) -> Self {
-        Self { diffuse: Vec3::splat(std::f32::consts::PI), normal, geometric: normal, layers: Layers::Diffuse }
+        Self { diffuse: Vec3::splat(std::f32::consts::PI), normal, geometric: normal, layers: BsdfLayers::Diffuse }
     }
 
     /// The shading normal, facing the viewer.
@@ -209,9 +209,9 @@ impl<'a> Bsdf<'a> {
     /// Returns the reflectance plus the transmittance at normal incidence.
     pub fn colour(&self) -> Vec3 {
         let above = match &self.layers {
-            Layers::Diffuse => Vec3::ZERO,
-            Layers::Specular(l) => l.bsdf_params.f0 + l.bsdf_params.transmission,
-            Layers::Boundary(l) => l.dielectric.colour(),
+            BsdfLayers::Diffuse => Vec3::ZERO,
+            BsdfLayers::Specular(l) => l.bsdf_params.f0 + l.bsdf_params.transmission,
+            BsdfLayers::Boundary(l) => l.dielectric.colour(),
         };
         self.diffuse + above
     }
@@ -220,7 +220,7 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn beyond(&self) -> Option<Media> {
         match &self.layers {
-            Layers::Boundary(l) => Some(l.beyond),
+            BsdfLayers::Boundary(l) => Some(l.beyond),
             _ => None,
         }
     }
@@ -231,9 +231,9 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn is_shareable(&self) -> bool {
         match &self.layers {
-            Layers::Diffuse => self.diffuse != Vec3::ZERO,
-            Layers::Boundary(_) => false,
-            Layers::Specular(SpecularLayers { bsdf_params: s, .. }) => {
+            BsdfLayers::Diffuse => self.diffuse != Vec3::ZERO,
+            BsdfLayers::Boundary(_) => false,
+            BsdfLayers::Specular(SpecularLayers { bsdf_params: s, .. }) => {
                 let is_rough = s.f90 == 0.0 || s.roughness >= SHAREABLE_ROUGHNESS;
                 is_rough && s.transmission == Vec3::ZERO && s.diffuse + s.f0 != Vec3::ZERO
             }
@@ -243,7 +243,7 @@ impl<'a> Bsdf<'a> {
     /// Whether the BSDF has only a diffuse layer.
     #[inline]
     pub fn is_diffuse(&self) -> bool {
-        matches!(self.layers, Layers::Diffuse)
+        matches!(self.layers, BsdfLayers::Diffuse)
     }
 
     /// Whether the BSDF is the same for all viewers on the same side of the surface.
@@ -256,9 +256,9 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn has_non_specular(&self) -> bool {
         match &self.layers {
-            Layers::Diffuse => self.diffuse != Vec3::ZERO,
-            Layers::Boundary(layer) => layer.dielectric.is_rough(),
-            Layers::Specular(layers) => layers.shares[0] > 0.0 || (layers.shares[1] > 0.0 && layers.lobe.is_some()),
+            BsdfLayers::Diffuse => self.diffuse != Vec3::ZERO,
+            BsdfLayers::Boundary(layer) => layer.dielectric.is_rough(),
+            BsdfLayers::Specular(layers) => layers.shares[0] > 0.0 || (layers.shares[1] > 0.0 && layers.lobe.is_some()),
         }
     }
 
@@ -272,9 +272,9 @@ impl<'a> Bsdf<'a> {
         }
         let projected = cosine * FRAC_1_PI;
         match &self.layers {
-            Layers::Diffuse => (Lobes { diffuse: self.diffuse * projected, glossy: Vec3::ZERO }, projected),
-            Layers::Specular(layers) => layers.eval(direction, cosine),
-            Layers::Boundary(layer) => layer.eval(direction, cosine),
+            BsdfLayers::Diffuse => (Lobes { diffuse: self.diffuse * projected, glossy: Vec3::ZERO }, projected),
+            BsdfLayers::Specular(layers) => layers.eval(direction, cosine),
+            BsdfLayers::Boundary(layer) => layer.eval(direction, cosine),
         }
     }
 
@@ -283,9 +283,9 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn sample(&self, u: Vec2) -> Option<BsdfSample> {
         match &self.layers {
-            Layers::Diffuse => {}
-            Layers::Specular(layers) => return layers.sample(self, u),
-            Layers::Boundary(layer) => return layer.sample(self, u),
+            BsdfLayers::Diffuse => {}
+            BsdfLayers::Specular(layers) => return layers.sample(self, u),
+            BsdfLayers::Boundary(layer) => return layer.sample(self, u),
         }
         let local = cosine_hemisphere(u);
         let (t, b) = self.normal.any_orthonormal_pair();

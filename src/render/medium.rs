@@ -9,7 +9,6 @@
 //!
 //! Not modelled: scattering inside a body.
 
-use super::compiled_material::CompiledMaterial;
 use crate::error::{Error, ErrorKind, Result};
 use crate::maths;
 use crate::scene::Material;
@@ -45,20 +44,26 @@ impl Medium {
     }
 }
 
-/// Numbers the media of all solid materials: sets [`CompiledMaterial::medium`], and returns the media by their numbers.
+/// Numbers the media inside solid bodies. Returns the media by their numbers, and for each material the number of the
+/// medium inside its bodies; [`AIR`] if it has none.
 ///
 /// # Errors
 /// Too many solid materials.
-pub fn number(materials: &[Material], compiled: &mut [CompiledMaterial]) -> Result<Vec<Medium>> {
+pub fn number(materials: &[Material]) -> Result<(Vec<Medium>, Vec<u16>)> {
     let mut media = vec![Medium::OF_AIR];
-    for (material, compiled) in materials.iter().zip(compiled).filter(|(material, _)| material.is_solid()) {
-        compiled.medium = u16::try_from(media.len()).map_err(|_| {
+    let numbers = materials.iter().map(|material| {
+        if !material.is_solid() {
+            return Ok(AIR);
+        }
+        let number = u16::try_from(media.len()).map_err(|_| {
             let message = format!("scene has more than {} materials of solid glass", u16::MAX);
             Error::new(ErrorKind::Unsupported, message)
         })?;
         media.push(Medium::inside(material));
-    }
-    Ok(media)
+        Ok(number)
+    });
+    let numbers = numbers.collect::<Result<_>>()?;
+    Ok((media, numbers))
 }
 
 /// The numbers of the media of the bodies that contain a point of a path, in 16 bits each. The lowest 16 bits belong to

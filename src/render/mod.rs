@@ -41,6 +41,7 @@ mod ggx;
 pub mod glare;
 pub mod gonio;
 pub mod illuminance;
+mod immersion;
 mod layers;
 mod light;
 pub mod lpe;

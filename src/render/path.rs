@@ -13,6 +13,7 @@ use super::bsdf::{Bsdf, BsdfSample, Lobes, ScatterKind};
 use super::contribution::{LightSource, PathSink};
 use super::environment;
 use super::facet::NONE;
+use super::immersion::media_at;
 use super::light::{LightEnd, LightSample};
 use super::medium::Media;
 use super::sampler::Sampler;
@@ -158,7 +159,7 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
     let receiver = Bsdf::receiver(normal);
     let block = sampler.next();
     let light_u = (block.fine(0), block.get(1));
-    let media = world.media_at(vertex.off_surface(normal));
+    let media = media_at(world, vertex.off_surface(normal));
     if let Some(segment) = scatter(world, vertex, &receiver, Vec3::ONE, None, media, light_u, sampler, observer) {
         let roulette_weight = Some(reciprocal(segment.throughput * radiance_scale(world, segment.media)));
         let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight };

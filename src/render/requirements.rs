@@ -55,6 +55,8 @@ pub struct Requirements {
     /// Number of meshes of solid glass that are not closed (`open_solids`), and index of the first of them.
     pub open_solids: usize,
     pub first_open_solid: Option<usize>,
+    /// Index of the first mesh of solid glass whose front sides face inwards.
+    pub inverted_solid: Option<usize>,
     /// Index of the first material of thin panes that is rough. Frosted panes are not modelled.
     pub frosted: Option<usize>,
 }
@@ -135,6 +137,10 @@ impl Requirements {
                 count => format!("{count} meshes, the first of them mesh {first}, are"),
             };
             sentences.push(format!("{meshes} solid glass but not closed: where light leaves, it is not clear."));
+        }
+        if let Some(mesh) = self.inverted_solid {
+            let what = "solid glass with its front sides inwards";
+            sentences.push(format!("Mesh {mesh} is {what}: light is bent as if glass were outside and air inside."));
         }
         if self.refraction && (self.points || self.spots || self.directional) {
             let what = "Solid glass casts a black shadow of lights without a surface (points, spots, the sun)";
@@ -317,6 +323,10 @@ impl Requirements {
             let (count, first) = match (material.is_solid(), mesh.is_closed()) {
                 (false, true) => (&mut self.solids, &mut self.first_solid),
                 (true, false) => (&mut self.open_solids, &mut self.first_open_solid),
+                (true, true) if mesh.volume() < 0.0 => {
+                    self.inverted_solid.get_or_insert(index);
+                    continue;
+                }
                 _ => continue,
             };
             *count += 1;

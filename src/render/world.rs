@@ -92,7 +92,8 @@ impl World {
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
         let (mut requirements, mut compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
-        let media = medium::number(&scene.materials, &mut compiled_materials)?;
+        let (media, numbers) = medium::number(&scene.materials)?;
+        compiled_materials.iter_mut().zip(numbers).for_each(|(compiled, number)| compiled.medium = number);
         compiled_materials.push(CompiledMaterial::BLACK);
         requirements.flat_triangles = accel.dropped();
         requirements.keep_surfaces_that_emit(lights.pieces());
@@ -405,36 +406,6 @@ impl World {
     #[inline]
     pub(super) fn medium(&self, media: Media) -> &Medium {
         &self.media[usize::from(media.innermost())]
-    }
-
-    /// Finds the solid bodies that contain a point, given in world coordinates. A ray from the point leaves those
-    /// bodies, and no others, without having entered them before.
-    pub(super) fn media_at(&self, position: Vec3) -> Media {
-        if self.media.len() == 1 {
-            return Media::NONE;
-        }
-        // A direction that is unlikely to run along an edge of a body. [convention]
-        const ASIDE: Vec3 = Vec3::new(0.3741, 0.8512, 0.3682);
-        let mut surfaces = Vec::new();
-        self.accel.occluded(&Ray::new(position, ASIDE), |hit| {
-            let facet = self.facet(hit.triangle);
-            let medium = self.compiled_material(facet).medium;
-            if medium != medium::AIR {
-                surfaces.push((hit.t, medium, facet.normal.dot(ASIDE) > 0.0));
-            }
-            false
-        });
-        surfaces.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        // Collect the bodies from the inside outwards, then enter them from the outside inwards.
-        let (mut entered, mut around) = (Vec::new(), Vec::new());
-        for (_, medium, leaves) in surfaces {
-            match entered.iter().position(|&other| other == medium) {
-                _ if !leaves => entered.push(medium),
-                Some(place) => drop(entered.swap_remove(place)),
-                None => around.push(medium),
-            }
-        }
-        around.into_iter().rev().fold(Media::NONE, Media::entered)
     }
 
     /// Whether any surface of the scene lets light through.

@@ -1,5 +1,6 @@
 //! Camera paths: generates the rays of a pixel and traces the radiance along them.
 
+use crate::render::immersion::media_at;
 use crate::render::layers::Recorder;
 use crate::render::medium::Media;
 use crate::render::params::Params;
@@ -80,7 +81,7 @@ impl CameraRays {
         let corner = at(0.0, 0.0);
         let right = (at(1.0, 0.0) - corner) / params.width as f32;
         let down = (at(0.0, 1.0) - corner) / params.height as f32;
-        let media = world.media_at(world.from_scene(camera.position));
+        let media = media_at(world, world.from_scene(camera.position));
         Self { position: camera.position, media, corner, right, down }
     }
 
