@@ -25,8 +25,8 @@ pub enum Scatter {
 }
 
 pub struct Alphabet {
-    /// Scattering events: one of each kind for each class of meshes, in the order of [`Scatter`]. Meshes belong to one class if no
-    /// expression distinguishes them.
+    /// Scattering events: one of each kind for each class of meshes, in the order of [`Scatter`]. Meshes belong to one
+    /// class if no expression distinguishes them.
     pub scatters: Vec<Event>,
     /// Light events, at the light end of a path.
     pub lights: Vec<Event>,
