@@ -307,9 +307,10 @@ typedef struct luxfer_material_params {
     float normal_scale;
     /**
      * If above 0, and transmission too, the meshes of this material are the surfaces of solid bodies, which refract
-     * and absorb light: closed meshes whose front sides, from which the triangles wind counter-clockwise, face outwards.
-     * base_color tints the light whenever it passes the surface, and roughness blurs it. If 0, the default, the meshes
-     * are thin panes. The value itself does not matter: the mesh states how thick the body is. In metres, finite.
+     * and absorb light: closed meshes whose front sides, from which the triangles wind counter-clockwise, face
+     * outwards. base_color tints the light whenever it passes the surface, and roughness blurs it. If 0, the default,
+     * the meshes are thin panes. The value itself does not matter: the mesh states how thick the body is. In metres,
+     * finite.
      */
     float thickness;
     /**

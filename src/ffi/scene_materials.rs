@@ -63,9 +63,10 @@ pub struct luxfer_material_params {
     /// Strength of the normal texture: a factor for the x and y of its normals, finite; default 1.
     pub normal_scale: f32,
     /// If above 0, and transmission too, the meshes of this material are the surfaces of solid bodies, which refract
-    /// and absorb light: closed meshes whose front sides, from which the triangles wind counter-clockwise, face outwards.
-    /// base_color tints the light whenever it passes the surface, and roughness blurs it. If 0, the default, the meshes
-    /// are thin panes. The value itself does not matter: the mesh states how thick the body is. In metres, finite.
+    /// and absorb light: closed meshes whose front sides, from which the triangles wind counter-clockwise, face
+    /// outwards. base_color tints the light whenever it passes the surface, and roughness blurs it. If 0, the default,
+    /// the meshes are thin panes. The value itself does not matter: the mesh states how thick the body is. In metres,
+    /// finite.
     pub thickness: f32,
     /// Share of the light that is left after attenuation_distance inside a solid body, each channel in [0, 1];
     /// default 1.
