@@ -28,7 +28,7 @@ const BLOCK: usize = 4;
 const IMAGES: u32 = 16;
 /// Paths per pixel of each image.
 const PATHS: u32 = 256;
-const GLASS_PATHS: u32 = 48;
+const GLASS_PATHS: u32 = 24;
 
 /// A block that stands on the floor, turned by `angle` (radians) about the vertical; `centre` is that of its base.
 fn block(centre: Vec3, size: Vec3, angle: f32, material: usize) -> Vec<Mesh> {
@@ -229,6 +229,6 @@ fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
 #[test]
 fn bodies_of_glass_are_mitsubas_within_the_joint_confidence_interval() {
     let Some((lit, widest, error)) = compare(&glass_box(), "glass", GLASS_PATHS) else { return };
-    assert!(lit > 90 && widest < 0.25, "{lit} lit, widest interval {widest}");
+    assert!(lit > 90 && widest < 0.4, "{lit} lit, widest interval {widest}");
     assert!(error < 0.004, "the image's mean is not known well enough");
 }

@@ -110,9 +110,10 @@ def interior(material):
     if not is_solid(material) or "attenuationDistance" not in volume:
         return None
     absorption = -np.log(volume.get("attenuationColor", [1, 1, 1])) / volume["attenuationDistance"]
-    return mi.load_dict({
-        "type": "homogeneous", "albedo": 0.0, "sigma_t": {"type": "rgb", "value": absorption.tolist()},
-    })
+    # Mitsuba refuses colours above 1.
+    scale = max(float(absorption.max()), 1e-30)
+    color = {"type": "rgb", "value": (absorption / scale).tolist()}
+    return mi.load_dict({"type": "homogeneous", "albedo": 0.0, "sigma_t": color, "scale": scale})
 
 
 def bsdf(glb, material):
