@@ -14,7 +14,7 @@ fn block(low: Vec3, high: Vec3, material: usize) -> Mesh {
     let positions = (0..8).map(corner).collect();
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
-    Mesh { positions, triangles, material, ..Mesh::default() }
+    Mesh { material, positions, triangles, ..Mesh::default() }
 }
 
 fn under_a_sky(mesh: Mesh, material: Material) -> World {
