@@ -193,7 +193,7 @@ def scene(context: luxfer.Context) -> bytes:
     out = luxfer.Scene(context)
     out.add_material(name="Paint", base_color=(0.5, 0.4, 0.3), roughness=0.5, metallic=0.5)
     out.add_material(name="Lamp", emission=(50, 40, 30), double_sided=1)
-    out.add_material(name="Glass", transmission=0.9, ior=1.4)
+    out.add_material(name="Glass", transmission=0.9, ior=1.4, thickness=0.1, attenuation_color=(1, 0.5, 0), attenuation_distance=2)
     corners = np.float32([[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]])
     triangles = np.uint32([[0, 2, 1], [0, 3, 2]])
     for material, height in ((0, 0), (1, 2), (2, 1)):

@@ -607,7 +607,7 @@ layouts! {
     luxfer_surface: struct_size reserved triangles origin u_axis v_axis normal size area sloped_area;
     luxfer_scene_load_params: struct_size allow_external_files unit keep_origin luminaire_shape;
     luxfer_material_params: struct_size double_sided name base_color metallic roughness emission transmission ior
-        alpha alpha_mode alpha_cutoff normal_scale;
+        alpha alpha_mode alpha_cutoff normal_scale thickness attenuation_color attenuation_distance reserved;
     luxfer_mesh_params: struct_size material name vertex_count positions position_stride normals normal_stride uvs
         uv_stride triangle_count indices index_stride colours
         colour_stride;

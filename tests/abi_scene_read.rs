@@ -233,6 +233,9 @@ fn replace_material(scene: *mut luxfer_scene) {
             alpha_mode: LUXFER_ALPHA_MASK,
             alpha_cutoff: 0.7,
             normal_scale: -2.0,
+            thickness: 0.01,
+            attenuation_color: [0.9, 0.8, 0.0],
+            attenuation_distance: 0.25,
             double_sided: 0,
             ..given
         };
@@ -242,6 +245,11 @@ fn replace_material(scene: *mut luxfer_scene) {
             luxfer_material_params { alpha: 1.1, ..given },
             luxfer_material_params { alpha_cutoff: f32::NAN, ..given },
             luxfer_material_params { normal_scale: f32::INFINITY, ..given },
+            luxfer_material_params { thickness: f32::INFINITY, ..given },
+            luxfer_material_params { attenuation_color: [0.5, 1.1, 0.5], ..given },
+            luxfer_material_params { attenuation_distance: 0.0, ..given },
+            luxfer_material_params { attenuation_distance: f32::NAN, ..given },
+            luxfer_material_params { reserved: 1, ..given },
         ] {
             assert_eq!(luxfer_scene_set_material(scene, 0, &wrong), LUXFER_INVALID_ARGUMENT);
         }
@@ -249,9 +257,9 @@ fn replace_material(scene: *mut luxfer_scene) {
         let mut back: luxfer_material_params = zeroed();
         assert_eq!(luxfer_scene_get_material(scene, 0, &mut back, size_of_val(&back)), LUXFER_OK);
         let numbers = |m: &luxfer_material_params| {
-            let colours = [m.base_color, m.emission];
+            let colours = [m.base_color, m.emission, m.attenuation_color];
             let rest = [m.metallic, m.roughness, m.transmission, m.ior, m.alpha, m.alpha_cutoff, m.normal_scale];
-            (colours, rest, m.alpha_mode, m.double_sided)
+            (colours, rest, [m.thickness, m.attenuation_distance], m.alpha_mode, m.double_sided)
         };
         assert_eq!(numbers(&back), numbers(&given));
     }

@@ -1,4 +1,5 @@
-//! Compares renderings of a Cornell box with those of Mitsuba 3, another unbiased path tracer.
+//! Compares renderings of a Cornell box, once with bodies of glass, with those of Mitsuba 3, another unbiased path
+//! tracer.
 //!
 //! Each renderer makes several images of the same GLB, which differ only in their seeds. The images are divided into
 //! blocks. The scatter of a block's mean among the images gives the variance of its mean over all images, even though
@@ -25,8 +26,9 @@ use statistics::{Difference, statistics, welch};
 const SIDE: usize = 24;
 const BLOCK: usize = 4;
 const IMAGES: u32 = 16;
-const OUR_PATHS: u32 = 256;
-const THEIR_PATHS: u32 = 256;
+/// Paths per pixel of each image.
+const PATHS: u32 = 256;
+const GLASS_PATHS: u32 = 24;
 
 /// A block that stands on the floor, turned by `angle` (radians) about the vertical; `centre` is that of its base.
 fn block(centre: Vec3, size: Vec3, angle: f32, material: usize) -> Vec<Mesh> {
@@ -69,6 +71,47 @@ fn cornell() -> Scene {
     Scene { meshes, materials, cameras: vec![camera], ..Scene::default() }
 }
 
+/// A closed box with outward faces; `low` and `high` are its corners.
+fn closed_box(low: Vec3, high: Vec3, material: usize) -> Mesh {
+    let corner = |i: usize| Vec3::select(glam::BVec3::new(i & 1 > 0, i & 2 > 0, i & 4 > 0), high, low);
+    let positions = (0..8).map(corner).collect();
+    let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let triangles = sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c], [a, c, d]]).collect();
+    Mesh { material, positions, triangles, ..Mesh::default() }
+}
+
+/// The Cornell box with a block of tinted, absorbing glass and a block of rough glass, under a lamp as large as most of
+/// the ceiling, so that both renderers find it through the glass.
+fn glass_box() -> Scene {
+    let mut scene = cornell();
+    scene.meshes.truncate(5);
+    scene.meshes.push(Mesh::parallelogram(Vec3::new(0.05, 0.545, 0.05), Vec3::X * 0.456, Vec3::Z * 0.459, 3));
+    scene.materials[3].emission = Vec3::new(1.5, 1.2, 1.0);
+    let clear = Material {
+        name: "Clear".into(),
+        base_color: Vec3::new(0.9, 0.95, 1.0),
+        metallic: 0.0,
+        roughness: 0.0,
+        transmission: 1.0,
+        thickness: 1.0,
+        attenuation_color: Vec3::new(0.3, 0.8, 0.6),
+        attenuation_distance: 0.1,
+        ..Material::default()
+    };
+    let rough = Material {
+        name: "Rough".into(),
+        base_color: Vec3::ONE,
+        roughness: 0.2,
+        ior: 1.7,
+        attenuation_distance: f32::INFINITY,
+        ..clear.clone()
+    };
+    scene.materials.extend([clear, rough]);
+    scene.meshes.push(closed_box(Vec3::new(0.29, 0.01, 0.3), Vec3::new(0.45, 0.17, 0.46), 4));
+    scene.meshes.push(closed_box(Vec3::new(0.1, 0.01, 0.12), Vec3::new(0.26, 0.34, 0.28), 5));
+    scene
+}
+
 /// Mean of each channel in each block of an image; the last three values are the means of the whole image.
 fn blocks(pixels: &[f32]) -> Vec<f64> {
     let across = SIDE / BLOCK;
@@ -81,7 +124,7 @@ fn blocks(pixels: &[f32]) -> Vec<f64> {
     means
 }
 
-fn ours(scene: &Scene) -> Vec<Vec<f64>> {
+fn ours(scene: &Scene, paths: u32) -> Vec<Vec<f64>> {
     let monitor = Monitor::default();
     Pool::new(2).unwrap().run(|| {
         let world = World::build(Arc::new(scene.clone()), monitor.job()).unwrap();
@@ -89,7 +132,7 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
             let params = render::Params {
                 width: SIDE,
                 height: SIDE,
-                samples: OUR_PATHS,
+                samples: paths,
                 seed: u64::from(seed),
                 ..render::Params::default()
             };
@@ -101,13 +144,13 @@ fn ours(scene: &Scene) -> Vec<Vec<f64>> {
 }
 
 /// Block means of Mitsuba's images, one row per image. Its scalar back end needs no other software.
-fn theirs(python: &Path, scene: &Scene) -> Vec<Vec<f64>> {
+fn theirs(python: &Path, scene: &Scene, name: &str, paths: u32) -> Vec<Vec<f64>> {
     let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
-    let glb = folder.join("cornell.glb");
+    let glb = folder.join(format!("{name}.glb"));
     std::fs::write(&glb, gltf::export(scene).unwrap()).unwrap();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/peers/mitsuba_render.py");
-    let out = folder.join("cornell.mitsuba");
-    let log = folder.join("cornell.mitsuba.log");
+    let out = folder.join(format!("{name}.mitsuba"));
+    let log = folder.join(format!("{name}.mitsuba.log"));
     let mut mitsuba: Child = Command::new(python)
         .arg(script)
         .arg("scalar_rgb")
@@ -127,7 +170,7 @@ fn theirs(python: &Path, scene: &Scene) -> Vec<Vec<f64>> {
     };
     answer();
     let image = |seed: u32| {
-        writeln!(jobs, "{THEIR_PATHS} {seed}").unwrap();
+        writeln!(jobs, "{paths} {seed}").unwrap();
         answer();
         let bytes = std::fs::read(&out).unwrap();
         let pixels: Vec<f32> = bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect();
@@ -140,16 +183,16 @@ fn theirs(python: &Path, scene: &Scene) -> Vec<Vec<f64>> {
     images
 }
 
-#[test]
-fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
+/// Compares all means of a scene. Returns the number of lit means, the widest interval relative to the mean, and the
+/// standard error of the difference of the images' means, relative to the mean; `None` without Mitsuba.
+fn compare(scene: &Scene, name: &str, paths: u32) -> Option<(usize, f64, f64)> {
     let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/peers/mitsuba/bin/python");
     if !python.exists() {
         assert!(std::env::var_os("CI").is_none(), "{} is not there: run `make setup`", python.display());
         println!("skipped: Mitsuba is not installed; `make setup` installs it");
-        return;
+        return None;
     }
-    let scene = cornell();
-    let (ours, theirs) = (ours(&scene), theirs(&python, &scene));
+    let (ours, theirs) = (ours(scene, paths), theirs(&python, scene, name, paths));
     let tests = ours[0].len();
     // Count the lit blocks: the corners of the image lie outside the box and are black.
     let (mut widest, mut worst, mut lit) = (0.0f64, 0.0f64, 0);
@@ -172,7 +215,20 @@ fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
         variance.sqrt(),
         other_variance.sqrt()
     );
+    Some((lit, widest, (variance + other_variance).sqrt() / mean))
+}
+
+#[test]
+fn a_cornell_box_is_mitsubas_within_the_joint_confidence_interval() {
+    let Some((lit, widest, error)) = compare(&cornell(), "cornell", PATHS) else { return };
     // The intervals must be narrow, or they would hide errors.
     assert!(lit > 90 && widest < 0.15, "{lit} lit, widest interval {widest}");
-    assert!((variance + other_variance).sqrt() < 0.004 * mean, "the image's mean is not known well enough");
+    assert!(error < 0.004, "the image's mean is not known well enough");
+}
+
+#[test]
+fn bodies_of_glass_are_mitsubas_within_the_joint_confidence_interval() {
+    let Some((lit, widest, error)) = compare(&glass_box(), "glass", GLASS_PATHS) else { return };
+    assert!(lit > 90 && widest < 0.4, "{lit} lit, widest interval {widest}");
+    assert!(error < 0.004, "the image's mean is not known well enough");
 }

@@ -227,8 +227,8 @@ luxfer_status luxfer_render_get_report(luxfer_render *render,
  * The second form runs from the camera (C) to a light, as in Open Shading Language, for example "C<RD>L",
  * "C[GS]+.*<L.'Lamp'>". An event has a type and a scattering mode: <RD> is a diffuse reflection. A letter alone, such
  * as G, matches any event with this type or mode. The types are R (reflection), T (transmission) and V (volume, never
- * occurs here). The modes are D (diffuse), G (glossy), S (mirror or clear pane) and s (clear pane only). Lights are L,
- * O and B; see luxfer_emitter_as.
+ * occurs here). The modes are D (diffuse), G (glossy, also rough solid glass), S (mirror, clear pane or smooth solid
+ * glass) and s (clear pane only). Lights are L, O and B; see luxfer_emitter_as.
  *
  * A label in quotes restricts an event to an object or a light. The label is the name of a mesh or of its material.
  * Name#0, Name#1, ... are the lamps (connected regions) in the emission texture of the mesh or material Name, numbered

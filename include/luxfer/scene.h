@@ -262,7 +262,7 @@ luxfer_status luxfer_scene_get_origin(luxfer_scene *scene,
 /* ==================================================================================================================
  * Materials
  *
- * Materials of surfaces, as in glTF 2.0: metallic-roughness with clear glass, alpha cut-outs and emission, and
+ * Materials of surfaces, as in glTF 2.0: metallic-roughness with panes, solid glass, alpha cut-outs and emission, and
  * textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when
  * its values change.
  * ================================================================================================================== */
@@ -290,9 +290,9 @@ typedef struct luxfer_material_params {
     /** Emission per channel in cd/m², each in [0, 1e15]; default 0. */
     float emission[3];
     /**
-     * Share of the light entering the non-metallic part of the surface that passes straight through, as through a thin
-     * clear pane, instead of being reflected diffusely, in [0, 1]; default 0. base_color tints this light, and
-     * roughness does not blur it.
+     * Share of the light entering the non-metallic part of the surface that passes through, instead of being reflected
+     * diffusely, in [0, 1]; default 0. base_color tints this light. If thickness is 0, it passes straight through, as
+     * through a thin clear pane, and roughness does not blur it.
      */
     float transmission;
     /** Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly. */
@@ -305,6 +305,23 @@ typedef struct luxfer_material_params {
     float alpha_cutoff;
     /** Strength of the normal texture: a factor for the x and y of its normals, finite; default 1. */
     float normal_scale;
+    /**
+     * If above 0, and transmission too, the meshes of this material are the surfaces of solid bodies, which refract
+     * and absorb light: closed meshes whose front sides, from which the triangles wind counter-clockwise, face
+     * outwards. base_color tints the light whenever it passes the surface, and roughness blurs it. If 0, the default,
+     * the meshes are thin panes. The value itself does not matter: the mesh states how thick the body is. In metres,
+     * finite.
+     */
+    float thickness;
+    /**
+     * Share of the light that is left after attenuation_distance inside a solid body, each channel in [0, 1];
+     * default 1.
+     */
+    float attenuation_color[3];
+    /** Distance in metres, > 0; infinite, the default: the body absorbs nothing. */
+    float attenuation_distance;
+    /** Must be 0. */
+    uint32_t reserved;
 } luxfer_material_params;
 
 /** Fills *place with the defaults, as luxfer_init does; size is sizeof *place. */
@@ -880,6 +897,9 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
 
 /** At least one surface is partly transparent because of its alpha. */
 #define LUXFER_SCATTERING_ALPHA 16
+
+/** At least one body is solid glass, which refracts. */
+#define LUXFER_SCATTERING_REFRACTION 32
 
 /** At least one surface emits; the luminous openings of luminaires count. */
 #define LUXFER_LIGHTS_SURFACE 1

@@ -23,6 +23,8 @@ pub const LUXFER_SCATTERING_MIRROR: u32 = 4;
 pub const LUXFER_SCATTERING_GLASS: u32 = 8;
 /// At least one surface is partly transparent because of its alpha.
 pub const LUXFER_SCATTERING_ALPHA: u32 = 16;
+/// At least one body is solid glass, which refracts.
+pub const LUXFER_SCATTERING_REFRACTION: u32 = 32;
 
 /// At least one surface emits; the luminous openings of luminaires count.
 pub const LUXFER_LIGHTS_SURFACE: u32 = 1;
@@ -96,7 +98,7 @@ pub unsafe extern "C" fn luxfer_scene_get_requirements(
         let found = world.requirements();
         let flags = |bits: &[bool]| bits.iter().zip(0..).map(|(&bit, i)| u32::from(bit) << i).sum();
         out.set(luxfer_requirements {
-            scattering: flags(&[found.diffuse, found.glossy, found.mirror, found.glass, found.alpha]),
+            scattering: flags(&[found.diffuse, found.glossy, found.mirror, found.glass, found.alpha, found.refraction]),
             lights: flags(&[
                 found.surfaces,
                 found.textured_surfaces,

@@ -1,6 +1,6 @@
 //! Materials
 //!
-//! Materials of surfaces, as in glTF 2.0: metallic-roughness with clear glass, alpha cut-outs and emission, and
+//! Materials of surfaces, as in glTF 2.0: metallic-roughness with panes, solid glass, alpha cut-outs and emission, and
 //! textures that multiply these values. Materials can be read back and replaced; a material keeps its textures when
 //! its values change.
 
@@ -48,9 +48,9 @@ pub struct luxfer_material_params {
     pub roughness: f32,
     /// Emission per channel in cd/m², each in [0, 1e15]; default 0.
     pub emission: [f32; 3],
-    /// Share of the light entering the non-metallic part of the surface that passes straight through, as through a thin
-    /// clear pane, instead of being reflected diffusely, in [0, 1]; default 0. base_color tints this light, and
-    /// roughness does not blur it.
+    /// Share of the light entering the non-metallic part of the surface that passes through, instead of being reflected
+    /// diffusely, in [0, 1]; default 0. base_color tints this light. If thickness is 0, it passes straight through, as
+    /// through a thin clear pane, and roughness does not blur it.
     pub transmission: f32,
     /// Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly.
     pub ior: f32,
@@ -62,11 +62,26 @@ pub struct luxfer_material_params {
     pub alpha_cutoff: f32,
     /// Strength of the normal texture: a factor for the x and y of its normals, finite; default 1.
     pub normal_scale: f32,
+    /// If above 0, and transmission too, the meshes of this material are the surfaces of solid bodies, which refract
+    /// and absorb light: closed meshes whose front sides, from which the triangles wind counter-clockwise, face
+    /// outwards. base_color tints the light whenever it passes the surface, and roughness blurs it. If 0, the default,
+    /// the meshes are thin panes. The value itself does not matter: the mesh states how thick the body is. In metres,
+    /// finite.
+    pub thickness: f32,
+    /// Share of the light that is left after attenuation_distance inside a solid body, each channel in [0, 1];
+    /// default 1.
+    pub attenuation_color: [f32; 3],
+    /// Distance in metres, > 0; infinite, the default: the body absorbs nothing.
+    pub attenuation_distance: f32,
+    /// Must be 0.
+    pub reserved: u32,
 }
 
-const MATERIAL_SIZE: usize = 64 + size_of::<usize>();
+/// Size of the struct up to and including normal_scale.
+const SIZE_WITHOUT_VOLUME: usize = 64 + size_of::<usize>();
+const MATERIAL_SIZE: usize = SIZE_WITHOUT_VOLUME + 24;
 
-versioned!(luxfer_material_params, [MATERIAL_SIZE], {
+versioned!(luxfer_material_params, [SIZE_WITHOUT_VOLUME, MATERIAL_SIZE], {
     Self {
         struct_size: MATERIAL_SIZE as u32,
         double_sided: 1,
@@ -81,6 +96,10 @@ versioned!(luxfer_material_params, [MATERIAL_SIZE], {
         alpha_mode: LUXFER_ALPHA_OPAQUE,
         alpha_cutoff: 0.5,
         normal_scale: 1.0,
+        thickness: 0.0,
+        attenuation_color: [1.0; 3],
+        attenuation_distance: f32::INFINITY,
+        reserved: 0,
     }
 });
 
@@ -202,6 +221,9 @@ pub unsafe extern "C" fn luxfer_scene_get_material(
             alpha_mode,
             alpha_cutoff,
             normal_scale: material.normal_scale,
+            thickness: material.thickness,
+            attenuation_color: material.attenuation_color.to_array(),
+            attenuation_distance: material.attenuation_distance,
             ..defaults
         });
         Ok(())
@@ -329,6 +351,10 @@ fn described(params: &luxfer_material_params) -> Result<Material> {
     for channel in params.base_color {
         check_range("material.base_color", channel, 0.0, 1.0)?;
     }
+    for channel in params.attenuation_color {
+        check_range("material.attenuation_color", channel, 0.0, 1.0)?;
+    }
+    check_range("material.reserved", params.reserved, 0, 0)?;
     let cutoff = check_range("material.alpha_cutoff", params.alpha_cutoff, 0.0, f32::MAX)?;
     let alpha_mode = match params.alpha_mode {
         LUXFER_ALPHA_OPAQUE => AlphaMode::Opaque,
@@ -350,6 +376,14 @@ fn described(params: &luxfer_material_params) -> Result<Material> {
         alpha: check_range("material.alpha", params.alpha, 0.0, 1.0)?,
         alpha_mode,
         normal_scale: check_range("material.normal_scale", params.normal_scale, f32::MIN, f32::MAX)?,
+        thickness: check_range("material.thickness", params.thickness, 0.0, f32::MAX)?,
+        attenuation_color: Vec3::from_array(params.attenuation_color),
+        attenuation_distance: check_range(
+            "material.attenuation_distance",
+            params.attenuation_distance,
+            f32::MIN_POSITIVE,
+            f32::INFINITY,
+        )?,
         ..Material::default()
     })
 }

@@ -9,9 +9,13 @@
 //! the incoming (ωi) or outgoing (ωo) direction, and Ē its cosine-weighted mean. A dielectric with an index of
 //! refraction of 1 has no top layer.
 //!
-//! Not modelled: frosted transmission, refraction in solids, anisotropy, multiple scattering between microfacets.
+//! The surface of a solid transparent body is another BSDF: a boundary that reflects and refracts ([`Dielectric`]).
+//!
+//! Not modelled: frosted panes, anisotropy, multiple scattering between microfacets.
 
+use super::dielectric::{Dielectric, DielectricSample};
 use super::ggx::{self, AlbedoTable};
+use super::medium::{Boundary, Media};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
 
@@ -61,8 +65,34 @@ pub struct Bsdf<'a> {
     /// Shading normal (`normal`) and geometric normal (`geometric`), both facing the viewer.
     normal: Vec3,
     geometric: Vec3,
-    /// The layers above the diffuse one; `None` for a purely diffuse BSDF.
-    layers: Option<SpecularLayers<'a>>,
+    layers: BsdfLayers<'a>,
+}
+
+/// The parts of a BSDF besides the diffuse layer.
+enum BsdfLayers<'a> {
+    Diffuse,
+    /// Layers above the diffuse one.
+    Specular(SpecularLayers<'a>),
+    /// The boundary of a solid body; there is no diffuse layer.
+    Boundary(BoundaryLayer),
+}
+
+/// The boundary of a solid body.
+struct BoundaryLayer {
+    dielectric: Dielectric,
+    /// The two tangents of the shading frame.
+    tangents: [Vec3; 2],
+    /// The media on the far side.
+    beyond: Media,
+}
+
+/// A point of a solid body's surface, as a path meets it.
+#[derive(Clone, Copy)]
+pub struct Interface {
+    pub boundary: Boundary,
+    /// Share of the refracted light that passes the surface, per channel.
+    pub tint: Vec3,
+    pub roughness: f32,
 }
 
 /// The top layer (GGX or mirror), and the light that passes through the material in a straight line.
@@ -115,7 +145,12 @@ pub enum ScatterKind {
     /// Scattering by the diffuse or the glossy lobe; the value is the pdf of the direction per solid angle.
     NonSpecular(f32),
     Mirror,
+    /// Straight transmission through a thin pane.
     Pane,
+    /// Refraction by the boundary of a solid body, which is rough or not. No light sample finds refracted light.
+    Refraction {
+        is_rough: bool,
+    },
 }
 
 impl<'a> Bsdf<'a> {
@@ -137,16 +172,29 @@ impl<'a> Bsdf<'a> {
         let diffuse = bsdf_params.diffuse;
         // Return early for diffuse surfaces, so that the unused layers are not copied.
         if !layered {
-            return Self { diffuse, normal, geometric, layers: None };
+            return Self { diffuse, normal, geometric, layers: BsdfLayers::Diffuse };
         }
         let layers = SpecularLayers::new(bsdf_params, normal, geometric.dot(wo), wo, table);
-        Self { diffuse, normal, geometric, layers: Some(layers) }
+        Self { diffuse, normal, geometric, layers: BsdfLayers::Specular(layers) }
+    }
+
+    /// Builds the BSDF of a solid body's surface for a viewer in direction `wo`.
+    pub fn boundary(interface: &Interface, [shading, geometric]: [Vec3; 2], wo: Vec3) -> Self {
+        let side = 1f32.copysign(geometric.dot(wo));
+        let normal = face_viewer(shading * side, wo);
+        let (t, b) = normal.any_orthonormal_pair();
+        let alpha = (interface.roughness >= MIRROR_ROUGHNESS).then_some(interface.roughness * interface.roughness);
+        let wo = to_local(&[t, b, normal], wo);
+        let dielectric = Dielectric::new(wo, interface.boundary.eta, interface.tint, alpha);
+        let layers =
+            BsdfLayers::Boundary(BoundaryLayer { dielectric, tangents: [t, b], beyond: interface.boundary.beyond });
+        Self { diffuse: Vec3::ZERO, normal, geometric: geometric * side, layers }
     }
 
     /// Returns the diffuse BSDF of a light meter. Its albedo is π, so the radiance that it reflects equals the
     /// irradiance that it receives.
     pub fn receiver(normal: Vec3) -> Self {
-        Self { diffuse: Vec3::splat(std::f32::consts::PI), normal, geometric: normal, layers: None }
+        Self { diffuse: Vec3::splat(std::f32::consts::PI), normal, geometric: normal, layers: BsdfLayers::Diffuse }
     }
 
     /// The shading normal, facing the viewer.
@@ -160,8 +208,21 @@ impl<'a> Bsdf<'a> {
 
     /// Returns the reflectance plus the transmittance at normal incidence.
     pub fn colour(&self) -> Vec3 {
-        let above = self.layers.as_ref().map(|l| l.bsdf_params.f0 + l.bsdf_params.transmission);
-        self.diffuse + above.unwrap_or(Vec3::ZERO)
+        let above = match &self.layers {
+            BsdfLayers::Diffuse => Vec3::ZERO,
+            BsdfLayers::Specular(l) => l.bsdf_params.f0 + l.bsdf_params.transmission,
+            BsdfLayers::Boundary(l) => l.dielectric.colour(),
+        };
+        self.diffuse + above
+    }
+
+    /// Returns the media behind the boundary of a solid body; `None` for all other surfaces.
+    #[inline]
+    pub fn beyond(&self) -> Option<Media> {
+        match &self.layers {
+            BsdfLayers::Boundary(l) => Some(l.beyond),
+            _ => None,
+        }
     }
 
     /// Whether neighbouring pixels may share a path vertex with this BSDF. True for a BSDF that reflects light,
@@ -170,8 +231,9 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn is_shareable(&self) -> bool {
         match &self.layers {
-            None => self.diffuse != Vec3::ZERO,
-            Some(SpecularLayers { bsdf_params: s, .. }) => {
+            BsdfLayers::Diffuse => self.diffuse != Vec3::ZERO,
+            BsdfLayers::Boundary(_) => false,
+            BsdfLayers::Specular(SpecularLayers { bsdf_params: s, .. }) => {
                 let is_rough = s.f90 == 0.0 || s.roughness >= SHAREABLE_ROUGHNESS;
                 is_rough && s.transmission == Vec3::ZERO && s.diffuse + s.f0 != Vec3::ZERO
             }
@@ -181,7 +243,7 @@ impl<'a> Bsdf<'a> {
     /// Whether the BSDF has only a diffuse layer.
     #[inline]
     pub fn is_diffuse(&self) -> bool {
-        self.layers.is_none()
+        matches!(self.layers, BsdfLayers::Diffuse)
     }
 
     /// Whether the BSDF is the same for all viewers on the same side of the surface.
@@ -194,8 +256,9 @@ impl<'a> Bsdf<'a> {
     #[inline]
     pub fn has_non_specular(&self) -> bool {
         match &self.layers {
-            None => self.diffuse != Vec3::ZERO,
-            Some(layers) => layers.shares[0] > 0.0 || (layers.shares[1] > 0.0 && layers.lobe.is_some()),
+            BsdfLayers::Diffuse => self.diffuse != Vec3::ZERO,
+            BsdfLayers::Boundary(layer) => layer.dielectric.is_rough(),
+            BsdfLayers::Specular(layers) => layers.shares[0] > 0.0 || (layers.shares[1] > 0.0 && layers.lobe.is_some()),
         }
     }
 
@@ -209,8 +272,9 @@ impl<'a> Bsdf<'a> {
         }
         let projected = cosine * FRAC_1_PI;
         match &self.layers {
-            None => (Lobes { diffuse: self.diffuse * projected, glossy: Vec3::ZERO }, projected),
-            Some(layers) => layers.eval(direction, cosine),
+            BsdfLayers::Diffuse => (Lobes { diffuse: self.diffuse * projected, glossy: Vec3::ZERO }, projected),
+            BsdfLayers::Specular(layers) => layers.eval(direction, cosine),
+            BsdfLayers::Boundary(layer) => layer.eval(direction, cosine),
         }
     }
 
@@ -218,8 +282,10 @@ impl<'a> Bsdf<'a> {
     /// because the BSDF is black or the direction lies below the surface.
     #[inline]
     pub fn sample(&self, u: Vec2) -> Option<BsdfSample> {
-        if let Some(layers) = &self.layers {
-            return layers.sample(self, u);
+        match &self.layers {
+            BsdfLayers::Diffuse => {}
+            BsdfLayers::Specular(layers) => return layers.sample(self, u),
+            BsdfLayers::Boundary(layer) => return layer.sample(self, u),
         }
         let local = cosine_hemisphere(u);
         let (t, b) = self.normal.any_orthonormal_pair();
@@ -230,6 +296,41 @@ impl<'a> Bsdf<'a> {
         let pdf = local.z * FRAC_1_PI;
         let lobes = Lobes { diffuse: self.diffuse * pdf, glossy: Vec3::ZERO };
         Some(BsdfSample { direction, weight: self.diffuse, lobes, kind: ScatterKind::NonSpecular(pdf) })
+    }
+
+    /// Returns the sample of a direction that the non-specular lobes have drawn; `None` if it carries no light.
+    fn non_specular(&self, direction: Vec3) -> Option<BsdfSample> {
+        let (lobes, pdf) = self.eval(direction);
+        if !(pdf > 0.0 && pdf.is_finite()) {
+            return None;
+        }
+        Some(BsdfSample { direction, weight: lobes.sum() / pdf, lobes, kind: ScatterKind::NonSpecular(pdf) })
+    }
+}
+
+impl BoundaryLayer {
+    /// Returns the value and the pdf of reflected light.
+    fn eval(&self, direction: Vec3, cosine: f32) -> (Lobes, f32) {
+        let [t, b] = self.tangents;
+        let (value, pdf) = self.dielectric.eval(Vec3::new(direction.dot(t), direction.dot(b), cosine));
+        (Lobes { diffuse: Vec3::ZERO, glossy: Vec3::splat(value) }, pdf)
+    }
+
+    fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<BsdfSample> {
+        let frame = [self.tangents[0], self.tangents[1], bsdf.normal];
+        let lobes = Lobes::NONE;
+        let (scattered, side) = match self.dielectric.sample(u)? {
+            DielectricSample::Reflected { direction } => return bsdf.non_specular(from_local(&frame, direction)),
+            DielectricSample::Mirrored { direction, weight } => {
+                let (direction, weight) = (from_local(&frame, direction), Vec3::splat(weight));
+                (BsdfSample { direction, weight, lobes, kind: ScatterKind::Mirror }, 1.0)
+            }
+            DielectricSample::Refracted { direction, weight } => {
+                let kind = ScatterKind::Refraction { is_rough: self.dielectric.is_rough() };
+                (BsdfSample { direction: from_local(&frame, direction), weight, lobes, kind }, -1.0)
+            }
+        };
+        (scattered.direction.dot(bsdf.geometric) * side > 0.0).then_some(scattered)
     }
 }
 
@@ -318,12 +419,7 @@ impl<'a> SpecularLayers<'a> {
         } else {
             return self.pass_through(&frame);
         };
-        let direction = from_local(&frame, local);
-        let (lobes, pdf) = bsdf.eval(direction);
-        if !(pdf > 0.0 && pdf.is_finite()) {
-            return None;
-        }
-        Some(BsdfSample { direction, weight: lobes.sum() / pdf, lobes, kind: ScatterKind::NonSpecular(pdf) })
+        bsdf.non_specular(from_local(&frame, local))
     }
 
     fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3) -> Option<BsdfSample> {

@@ -1,6 +1,7 @@
 //! Materials prepared for path tracing: parameters that do not vary with a texture are computed once per material.
 
 use super::bsdf::BsdfParams;
+use super::medium;
 use crate::maths;
 use crate::scene::Material;
 use glam::Vec3;
@@ -20,6 +21,8 @@ pub struct CompiledMaterial {
     pub has_alpha: bool,
     /// Whether light may pass straight through the material, because of its opacity or its transmission.
     pub lets_light_through: bool,
+    /// Number of the medium inside the bodies of this material; [`medium::AIR`] if the material is not solid glass.
+    pub medium: u16,
 }
 
 impl CompiledMaterial {
@@ -38,6 +41,7 @@ impl CompiledMaterial {
         has_normal_map: false,
         has_alpha: false,
         lets_light_through: false,
+        medium: medium::AIR,
     };
 
     /// Returns a copy with all flags set, so that tracing evaluates every shading feature.
@@ -56,9 +60,13 @@ impl CompiledMaterial {
 /// Converts the metallic-roughness parameters at a surface point to the parameters of the layers (glTF 2.0, appendix
 /// B.2).
 pub fn bsdf_params(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> BsdfParams {
+    layers(material, material.transmission, base, metallic, roughness)
+}
+
+fn layers(material: &Material, transmission: f32, base: Vec3, metallic: f32, roughness: f32) -> BsdfParams {
     let base = base.clamp(Vec3::ZERO, Vec3::ONE);
     let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
-    let transmission = material.transmission.clamp(0.0, 1.0);
+    let transmission = transmission.clamp(0.0, 1.0);
     let dielectric_f0 = maths::powi((material.ior - 1.0) / (material.ior + 1.0), 2);
     // A dielectric with an index of refraction of 1 has no interface, so it does not reflect at grazing angles either.
     let has_interface = material.ior > 1.0;
@@ -69,5 +77,33 @@ pub fn bsdf_params(material: &Material, base: Vec3, metallic: f32, roughness: f3
         roughness,
         transmission: base * ((1.0 - metallic) * transmission),
         dielectric_f0,
+    }
+}
+
+/// The parameters of a solid body's material at a surface point. The surface consists of tiny patches: some are clear
+/// glass, the others are opaque.
+#[derive(Clone, Copy, Debug)]
+pub struct SolidParams {
+    /// Share of the surface that is clear glass.
+    pub clear: f32,
+    /// Share of the refracted light that passes the surface, per channel.
+    pub tint: Vec3,
+    pub roughness: f32,
+    /// The opaque patches; not meaningful if there are none.
+    pub opaque: BsdfParams,
+}
+
+/// Converts the metallic-roughness parameters at a point of a solid body's surface. The blend of glTF (appendix B.2,
+/// `KHR_materials_transmission`) is linear in the shares of metal, of transmission and of the diffuse base, so a blend
+/// of patches is the same.
+pub fn solid_params(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> SolidParams {
+    let metallic = metallic.clamp(0.0, 1.0);
+    let clear = (1.0 - metallic) * material.transmission.clamp(0.0, 1.0);
+    let metallic = if clear < 1.0 { metallic / (1.0 - clear) } else { 0.0 };
+    SolidParams {
+        clear,
+        tint: base.clamp(Vec3::ZERO, Vec3::ONE),
+        roughness: roughness.clamp(0.0, 1.0),
+        opaque: layers(material, 0.0, base, metallic, roughness),
     }
 }

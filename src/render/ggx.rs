@@ -46,6 +46,12 @@ impl Lobe {
         (facets / (self.masking + lambda(wi, self.alpha)), facets / self.masking)
     }
 
+    /// Returns the share of a visible microfacet's light in direction `w`, on either side of the surface, that other
+    /// microfacets do not shadow (Smith's G1).
+    pub fn visibility(&self, w: Vec3) -> f32 {
+        1.0 / (1.0 + lambda(w, self.alpha))
+    }
+
     /// Samples a microfacet normal from the distribution of normals visible from `wo`.
     pub fn sample_normal(&self, u: Vec2) -> Vec3 {
         let (wo, alpha) = (self.wo, self.alpha);

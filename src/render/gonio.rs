@@ -17,6 +17,7 @@
 
 use super::bsdf::{Lobes, ScatterKind};
 use super::contribution::LightSource;
+use super::medium::Media;
 use super::path::{self, MAX_BOUNCES, Observer, PathLength, Strategy};
 use super::sampler::Sampler;
 use super::world::World;
@@ -238,7 +239,8 @@ impl<'a> Goniometer<'a> {
                 let ray = Ray::new(self.in_world(start).as_vec3(), -self.in_world(direction).as_vec3());
                 let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: None };
                 observer.scattered = false;
-                path::trace(&self.world, ray, (light.fine(0), light.get(1)), length, &mut sampler, &mut observer);
+                let light_u = (light.fine(0), light.get(1));
+                path::trace(&self.world, ray, Media::NONE, light_u, length, &mut sampler, &mut observer);
             }
             let mean = observer.light / f64::from(per_batch);
             *estimate = f64::from(colour::luminance(mean.as_vec3())).max(0.0) * area;

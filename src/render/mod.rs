@@ -20,8 +20,8 @@
 //! [`glare`] the unified glare rating of observers, [`gonio`] the luminous intensity distribution of emissive bodies.
 //! `denoise` filters noise and states the error that is left.
 //!
-//! Not modelled: volumes, refraction in solids, frosted glass, polarisation, wavelengths, depth of field, motion blur.
-//! [`Requirements::left_out`] lists the glass solids and the frosted glass of a scene. In C,
+//! Not modelled: scattering in volumes, frosted panes, polarisation, wavelengths, depth of field, motion blur.
+//! [`Requirements::left_out`] lists the frosted panes of a scene, and closed glass without a thickness. In C,
 //! `luxfer_scene_get_requirements_text` returns this list.
 
 mod aov;
@@ -31,6 +31,7 @@ mod bsdf;
 mod compiled_material;
 mod contribution;
 pub mod denoise;
+mod dielectric;
 mod distribution;
 mod emissive;
 mod environment;
@@ -40,11 +41,13 @@ mod ggx;
 pub mod glare;
 pub mod gonio;
 pub mod illuminance;
+mod immersion;
 mod layers;
 mod light;
 pub mod lpe;
 mod luminaires;
 mod measured;
+mod medium;
 mod output;
 mod overview;
 mod params;

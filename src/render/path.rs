@@ -3,13 +3,19 @@
 //! Light that both a BSDF sample and a light sample can find is weighted by the power heuristic (Veach 1997, 9.2.4).
 //! Clear panes are not vertices for MIS: they attenuate shadow rays without blocking them, and a path that passes a
 //! pane keeps the pdf of the vertex before it. Contributions are not clamped, so the estimate is unbiased.
+//!
+//! The surface of a solid body refracts, so a shadow ray cannot pass it: the surface blocks light samples. Only BSDF
+//! samples find light through it, with the weight 1. Light from points and from a single direction, which no BSDF
+//! sample can find, therefore never passes a solid body.
 
 use super::bounds::Receiver;
 use super::bsdf::{Bsdf, BsdfSample, Lobes, ScatterKind};
 use super::contribution::{LightSource, PathSink};
 use super::environment;
 use super::facet::NONE;
+use super::immersion::media_at;
 use super::light::{LightEnd, LightSample};
+use super::medium::Media;
 use super::sampler::Sampler;
 use super::vertex::Vertex;
 use super::world::{Pane, World};
@@ -107,16 +113,18 @@ pub(super) struct PathSegment {
     pub from: u32,
     pub throughput: Vec3,
     /// For MIS: the point at which a light was last sampled, and the solid-angle pdf of the BSDF sample drawn there.
-    /// `None` after the eye or a mirror, where no light sample could find the same light.
+    /// `None` after the eye, a mirror or a refraction, where no light sample could find the same light.
     pub mis: Option<(Receiver, f32)>,
+    /// The media that the segment runs through.
+    pub media: Media,
     /// Uniform random numbers in `[0, 1)` that select the light sample at the next vertex.
     pub light_u: (f64, f32),
 }
 
 impl PathSegment {
-    /// Returns the segment that leaves the eye along a ray of unit direction.
-    pub fn from_eye(ray: Ray, light_u: (f64, f32)) -> Self {
-        Self { ray, from: NONE, throughput: Vec3::ONE, mis: None, light_u }
+    /// Returns the segment that leaves the eye, which is among `media`, along a ray of unit direction.
+    pub fn from_eye(ray: Ray, media: Media, light_u: (f64, f32)) -> Self {
+        Self { ray, from: NONE, throughput: Vec3::ONE, mis: None, media, light_u }
     }
 }
 
@@ -131,17 +139,18 @@ pub struct PathLength {
     pub roulette_weight: Option<Vec3>,
 }
 
-/// Estimates the radiance that arrives along a ray of unit direction, with one path. `light_u` are uniform random
-/// numbers that select the first light sample.
+/// Estimates the radiance that arrives along a ray of unit direction, with one path. `media` are the media around the
+/// ray's origin; `light_u` are uniform random numbers that select the first light sample.
 pub fn trace<O: Observer>(
     world: &World,
     ray: Ray,
+    media: Media,
     light_u: (f64, f32),
     length: PathLength,
     sampler: &mut Sampler,
     observer: &mut O,
 ) {
-    walk(world, PathSegment::from_eye(ray, light_u), 0, length, sampler, observer);
+    walk(world, PathSegment::from_eye(ray, media, light_u), 0, length, sampler, observer);
 }
 
 /// Estimates the irradiance at a point, on its front or back side, with one path.
@@ -150,8 +159,10 @@ pub fn gather<O: Observer>(world: &World, vertex: &Vertex, front: bool, sampler:
     let receiver = Bsdf::receiver(normal);
     let block = sampler.next();
     let light_u = (block.fine(0), block.get(1));
-    if let Some(segment) = scatter(world, vertex, &receiver, Vec3::ONE, None, light_u, sampler, observer) {
-        let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight: Some(reciprocal(segment.throughput)) };
+    let media = media_at(world, vertex.off_surface(normal));
+    if let Some(segment) = scatter(world, vertex, &receiver, Vec3::ONE, None, media, light_u, sampler, observer) {
+        let roulette_weight = Some(reciprocal(segment.throughput * radiance_scale(world, segment.media)));
+        let length = PathLength { max_bounces: MAX_BOUNCES, roulette_weight };
         walk(world, segment, 0, length, sampler, observer);
     }
 }
@@ -166,7 +177,7 @@ pub(super) fn walk<O: Observer>(
     observer: &mut O,
 ) {
     for bounce in scattered.. {
-        let Some((vertex, distance)) = intersect(world, &segment, sampler, observer) else { return };
+        let Some((vertex, distance)) = intersect(world, &mut segment, sampler, observer) else { return };
         match continue_path(world, &segment, &vertex, distance, bounce, &mut length, sampler, observer) {
             Some(next) => segment = next,
             None => return,
@@ -174,16 +185,21 @@ pub(super) fn walk<O: Observer>(
     }
 }
 
-/// Intersects a segment with the scene. Adds the emission of the hit or, without a hit, of the environment. Returns
-/// the vertex and its distance; `None` without a hit.
+/// Intersects a segment with the scene, and multiplies its throughput by the transmittance of the medium that it runs
+/// through. Adds the emission of the hit or, without a hit, of the environment. Returns the vertex and its distance;
+/// `None` without a hit.
 #[inline(always)]
 pub(super) fn intersect<O: Observer>(
     world: &World,
-    segment: &PathSegment,
+    segment: &mut PathSegment,
     sampler: &Sampler,
     observer: &mut O,
 ) -> Option<(Vertex, f32)> {
-    let Some(hit) = world.closest(&segment.ray, segment.from, || sampler.ray_seed()) else {
+    let hit = world.closest(&segment.ray, segment.from, || sampler.ray_seed());
+    if !segment.media.is_none() {
+        segment.throughput *= world.medium(segment.media).transmittance(hit.map_or(f32::INFINITY, |hit| hit.t));
+    }
+    let Some(hit) = hit else {
         add_environment(world, segment, observer);
         add_discs(world, segment, observer);
         return None;
@@ -218,36 +234,50 @@ pub(super) fn continue_path<O: Observer>(
     {
         // If the expected share is below 1/4, the path survives with the probability √share instead of the smaller
         // share / `CERTAIN_SHARE`, because the expected share underestimates rare bright light.
-        let expected_share = (throughput * roulette_weight).max_element();
+        let scale = radiance_scale(world, segment.media);
+        let expected_share = (throughput * roulette_weight).max_element() * scale;
         let survival = (expected_share / CERTAIN_SHARE).max(expected_share.sqrt()).min(MAX_SURVIVAL);
         if !(sampler.chance() < survival) {
             return None;
         }
         throughput /= survival;
     }
-    let bsdf = vertex.bsdf(world, -segment.ray.direction);
+    let bsdf = vertex.bsdf(world, segment.media, || sampler.ray_seed(), -segment.ray.direction);
     if bounce == 0 && segment.from == NONE {
         observer.primary_hit(|| PrimaryHit::new(vertex, &bsdf, distance));
     }
-    let next = scatter(world, vertex, &bsdf, throughput, segment.mis, segment.light_u, sampler, observer)?;
-    length.roulette_weight.get_or_insert_with(|| reciprocal(next.throughput));
+    let PathSegment { mis, media, light_u, .. } = *segment;
+    let next = scatter(world, vertex, &bsdf, throughput, mis, media, light_u, sampler, observer)?;
+    length.roulette_weight.get_or_insert_with(|| reciprocal(next.throughput * radiance_scale(world, next.media)));
     Some(next)
 }
 
-/// Samples a light at a vertex, then samples the BSDF. Returns the next segment; `None` if the path ends.
+/// Returns the factor by which radiance grows in the medium of a point, compared with air: the square of the index of
+/// refraction. The light that a path still brings is expected to grow by this factor, as its throughput has shrunk.
+#[inline]
+fn radiance_scale(world: &World, media: Media) -> f32 {
+    if media.is_none() {
+        return 1.0;
+    }
+    let ior = world.medium(media).ior;
+    ior * ior
+}
+
+/// Samples a light at a vertex among `media`, then samples the BSDF. Returns the next segment; `None` if the path ends.
 pub(super) fn scatter<O: Observer>(
     world: &World,
     vertex: &Vertex,
     bsdf: &Bsdf,
     throughput: Vec3,
     mis: Option<(Receiver, f32)>,
+    media: Media,
     light_u: (f64, f32),
     sampler: &mut Sampler,
     observer: &mut O,
 ) -> Option<PathSegment> {
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
     if let Some(light) = sample_light(world, &receiver, bsdf, light_u) {
-        add_direct_light(world, vertex, bsdf, throughput, &light, observer);
+        add_direct_light(world, vertex, bsdf, throughput, media, &light, observer);
     }
     let (scattered, light_u) = sample_direction(bsdf, sampler)?;
     let throughput = throughput * scattered.weight;
@@ -255,12 +285,13 @@ pub(super) fn scatter<O: Observer>(
         return None;
     }
     observer.scatter(vertex.mesh, scattered.kind, scattered.lobes);
-    let mis = match scattered.kind {
-        ScatterKind::NonSpecular(pdf) => Some((receiver, pdf)),
-        ScatterKind::Mirror => None,
-        ScatterKind::Pane => mis,
+    let (mis, media) = match scattered.kind {
+        ScatterKind::NonSpecular(pdf) => (Some((receiver, pdf)), media),
+        ScatterKind::Mirror => (None, media),
+        ScatterKind::Pane => (mis, media),
+        ScatterKind::Refraction { .. } => (None, bsdf.beyond().unwrap_or(media)),
     };
-    Some(PathSegment { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, light_u })
+    Some(PathSegment { ray: vertex.ray(scattered.direction), from: vertex.id, throughput, mis, media, light_u })
 }
 
 /// Samples a light. `None` if no light can be sampled, or if the BSDF has no non-specular lobe (a mirror, a clear pane
@@ -291,6 +322,7 @@ pub(super) fn add_direct_light<O: Observer>(
     vertex: &Vertex,
     bsdf: &Bsdf,
     throughput: Vec3,
+    media: Media,
     light: &LightSample,
     observer: &mut O,
 ) {
@@ -299,18 +331,20 @@ pub(super) fn add_direct_light<O: Observer>(
     if value == Vec3::ZERO || light.emission == Vec3::ZERO {
         return;
     }
-    let importance = throughput * value * connection_weight(world, vertex, light, pdf, observer.panes());
+    let importance = throughput * value * connection_weight(world, vertex, media, light, pdf, observer.panes());
     if importance != Vec3::ZERO {
         observer.add(light.source, importance, light.emission, Strategy::LightSample { mesh: vertex.mesh, lobes });
     }
 }
 
 /// Returns the factor of a light sample's emission, without the BSDF: transmittance × MIS weight / `light.pdf`. The MIS
-/// weight follows from `pdf`, the solid-angle pdf with which the BSDF would sample the direction of the light.
+/// weight follows from `pdf`, the solid-angle pdf with which the BSDF would sample the direction of the light. The
+/// vertex is among `media`; the surface of a solid body blocks light samples, so the light is among the same media.
 #[inline(always)]
 pub(super) fn connection_weight(
     world: &World,
     vertex: &Vertex,
+    media: Media,
     light: &LightSample,
     pdf: f32,
     panes: Option<&mut Vec<Pane>>,
@@ -327,7 +361,11 @@ pub(super) fn connection_weight(
             (Ray { origin, direction: p - origin, t_max: 1.0 }, emitter.id)
         }
     };
-    let transmittance = world.transmittance(&ray, [vertex.id, end], panes);
+    let mut transmittance = world.transmittance(&ray, [vertex.id, end], panes);
+    if !media.is_none() {
+        let distance = if light.end.is_some() { ray.direction.length() } else { f32::INFINITY };
+        transmittance *= world.medium(media).transmittance(distance);
+    }
     if transmittance != Vec3::ZERO {
         world.lights().count_arrived(light);
     }

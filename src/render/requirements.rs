@@ -7,8 +7,9 @@
 //! roulette, not after this number of bounces.
 
 use super::bsdf::{BsdfParams, MIRROR_ROUGHNESS};
-use super::compiled_material::{self, CompiledMaterial};
+use super::compiled_material::{self, CompiledMaterial, SolidParams};
 use super::ggx::{self, AlbedoTable};
+use super::medium;
 use crate::maths;
 use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, TextureRef};
 use glam::{Vec3, Vec4};
@@ -22,6 +23,8 @@ pub struct Requirements {
     pub mirror: bool,
     /// Whether the scene has clear panes.
     pub glass: bool,
+    /// Whether the scene has solid glass, which refracts.
+    pub refraction: bool,
     /// Whether a surface has an opacity below 1.
     pub alpha: bool,
     pub normal_maps: bool,
@@ -45,11 +48,16 @@ pub struct Requirements {
     pub brightest: Option<usize>,
     /// Number of degenerate triangles, which no ray can hit.
     pub flat_triangles: usize,
-    /// Number of closed transparent meshes (`solids`), and index of the first of them. Refraction in solids is not
-    /// modelled.
+    /// Number of closed transparent meshes whose material has no thickness (`solids`), and index of the first of them.
+    /// They are rendered as thin panes.
     pub solids: usize,
     pub first_solid: Option<usize>,
-    /// Index of the first material that is transparent and rough. Frosted glass is not modelled.
+    /// Number of meshes of solid glass that are not closed (`open_solids`), and index of the first of them.
+    pub open_solids: usize,
+    pub first_open_solid: Option<usize>,
+    /// Index of the first mesh of solid glass whose front sides face inwards.
+    pub inverted_solid: Option<usize>,
+    /// Index of the first material of thin panes that is rough. Frosted panes are not modelled.
     pub frosted: Option<usize>,
 }
 
@@ -86,7 +94,7 @@ impl Requirements {
         unless(self.glossy || !self.mirror, "Reflecting layers are perfect mirrors: no rough reflection is evaluated.");
         unless(self.mirror || !self.glossy, "No reflecting layer is a perfect mirror.");
         unless(self.diffuse, "No surface scatters diffusely.");
-        unless(self.glass, "Nothing is transparent: no light passes through surfaces.");
+        unless(self.glass || self.refraction, "Nothing is transparent: no light passes through surfaces.");
         unless(self.alpha, "No surface is partly absent: rays do not ask for the opacity of what they hit.");
         unless(self.glass || self.alpha, "Shadow rays end at the first surface they meet.");
         unless(self.normal_maps, "No texture bends normals: tangents are not computed.");
@@ -106,14 +114,42 @@ impl Requirements {
                 1 => format!("Mesh {first} is"),
                 count => format!("{count} meshes, the first of them mesh {first}, are"),
             };
-            sentences
-                .push(format!("{meshes} closed and transparent: light goes straight on through, and is not bent."));
+            sentences.push(format!(
+                "{meshes} closed and transparent, of a material without thickness: light goes straight on through, and \
+                 is not bent."
+            ));
         }
+        self.name_limits_of_solids(&mut sentences);
         if let Some(material) = self.frosted {
             let what = "transparent and rough: light goes straight on through, and is not scattered";
             sentences.push(format!("Material {material} is {what}."));
         }
         sentences
+    }
+}
+
+impl Requirements {
+    /// Adds sentences about solid glass that is not closed, and about light that does not find its way through.
+    fn name_limits_of_solids(&self, sentences: &mut Vec<String>) {
+        if let Some(first) = self.first_open_solid {
+            let meshes = match self.open_solids {
+                1 => format!("Mesh {first} is"),
+                count => format!("{count} meshes, the first of them mesh {first}, are"),
+            };
+            sentences.push(format!("{meshes} solid glass but not closed: where light leaves, it is not clear."));
+        }
+        if let Some(mesh) = self.inverted_solid {
+            let what = "solid glass with its front sides inwards";
+            sentences.push(format!("Mesh {mesh} is {what}: light is bent as if glass were outside and air inside."));
+        }
+        if self.refraction && (self.points || self.spots || self.directional) {
+            let what = "Solid glass casts a black shadow of lights without a surface (points, spots, the sun)";
+            sentences.push(format!("{what}: their refracted light is left out."));
+        }
+        if self.refraction && (self.surfaces || self.environment) {
+            let what = "No light is sampled through solid glass";
+            sentences.push(format!("{what}: only paths that happen to meet a lamp or the sky behind it bring light."));
+        }
     }
 }
 
@@ -177,7 +213,11 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
         let compiled = compile_material(material, base, layers, range(&material.normal_texture));
         compiled_materials.push(compiled);
         if used[index] {
-            needed.include_material(index, &compiled, extremes(material, base, layers), table);
+            if material.is_solid() {
+                needed.include_solid_material(index, &compiled, solid_extremes(material, base, layers), table);
+            } else {
+                needed.include_material(index, &compiled, extremes(material, base, layers), table);
+            }
             if spread[index] {
                 needed.include_emission(material, range(&material.emission_texture));
             }
@@ -238,6 +278,26 @@ impl Requirements {
         }
     }
 
+    /// Adds the kinds of scattering that the material of solid bodies can cause, and the bound of its albedo.
+    fn include_solid_material(
+        &mut self,
+        index: usize,
+        compiled: &CompiledMaterial,
+        extremes: impl Iterator<Item = SolidParams> + Clone,
+        table: Option<&AlbedoTable>,
+    ) {
+        let opaque = extremes.clone().filter(|s| s.clear < 1.0).map(|s| s.opaque);
+        self.include_material(index, compiled, opaque, table);
+        for solid in extremes.filter(|s| s.clear > 0.0) {
+            self.refraction = true;
+            self.glossy |= solid.roughness >= MIRROR_ROUGHNESS;
+            self.mirror |= solid.roughness < MIRROR_ROUGHNESS;
+            // At grazing angles, glass reflects everything.
+            self.brightest = self.brightest.filter(|_| self.albedo.max_element() >= 1.0).or(Some(index));
+            self.albedo = Vec3::ONE;
+        }
+    }
+
     /// Sets the flags of surface emission for a material whose emission texture has values in the range `emission`.
     fn include_emission(&mut self, material: &Material, emission: Range) {
         if (material.emission * emission.high.truncate()).max_element() > 0.0 {
@@ -253,14 +313,24 @@ impl Requirements {
         self.textured_surfaces &= pieces > 0;
     }
 
-    /// Counts the closed transparent meshes.
+    /// Counts the transparent meshes that are closed although their material is thin, or open although it is solid.
     fn include_solids(&mut self, scene: &Scene) {
         for (index, mesh) in scene.meshes.iter().enumerate() {
             let material = &scene.materials[mesh.material];
-            if material.transmission > 0.0 && material.metallic < 1.0 && mesh.is_closed() {
-                self.solids += 1;
-                self.first_solid.get_or_insert(index);
+            if mesh.triangles.is_empty() || material.transmission <= 0.0 || material.metallic >= 1.0 {
+                continue;
             }
+            let (count, first) = match (material.is_solid(), mesh.is_closed()) {
+                (false, true) => (&mut self.solids, &mut self.first_solid),
+                (true, false) => (&mut self.open_solids, &mut self.first_open_solid),
+                (true, true) if mesh.volume() < 0.0 => {
+                    self.inverted_solid.get_or_insert(index);
+                    continue;
+                }
+                _ => continue,
+            };
+            *count += 1;
+            first.get_or_insert(index);
         }
     }
 
@@ -325,10 +395,12 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     CompiledMaterial {
         bsdf_params: compiled_material::bsdf_params(material, colour, metallic, roughness),
         is_textured: base_varies || layers_vary,
-        layered: extremes(material, base, layers).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
+        layered: material.is_solid()
+            || extremes(material, base, layers).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
         has_normal_map: material.normal_texture.is_some() && !is_neutral,
         has_alpha,
-        lets_light_through: has_alpha || material.transmission > 0.0,
+        lets_light_through: has_alpha || (material.transmission > 0.0 && !material.is_solid()),
+        medium: medium::AIR,
     }
 }
 
@@ -336,6 +408,18 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
 /// or largest metalness with its smallest or largest roughness. All parameters of the layers are linear or monotone in
 /// metalness and roughness, so their extremes are among these combinations.
 fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = BsdfParams> {
+    let factors = extreme_factors(material, base, layers);
+    factors.map(move |(colour, m, r)| compiled_material::bsdf_params(material, colour, m, r))
+}
+
+/// Returns the same combinations as [`extremes`] for the material of solid bodies.
+fn solid_extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = SolidParams> + Clone {
+    let factors = extreme_factors(material, base, layers);
+    factors.map(move |(colour, m, r)| compiled_material::solid_params(material, colour, m, r))
+}
+
+/// Returns the largest base colour with each combination of the extremes of metalness and roughness.
+fn extreme_factors(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = (Vec3, f32, f32)> + Clone {
     let ends = |factor: f32, low: f32, high: f32| {
         let (a, b) = (factor * low, factor * high);
         [a.min(b), a.max(b)]
@@ -343,7 +427,7 @@ fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<It
     let colour = (material.base_color * base.low.truncate()).max(material.base_color * base.high.truncate());
     let metallic = ends(material.metallic, layers.low.z, layers.high.z);
     let roughness = ends(material.roughness, layers.low.y, layers.high.y);
-    metallic.into_iter().flat_map(move |m| roughness.map(|r| compiled_material::bsdf_params(material, colour, m, r)))
+    metallic.into_iter().flat_map(move |m| roughness.map(|r| (colour, m, r)))
 }
 
 /// Returns the largest albedo, over all directions of incidence, with the BSDF parameters `s`. The result may be up to

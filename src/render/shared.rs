@@ -8,12 +8,13 @@
 //! vertices as the block has pixels; each further vertex costs the pixel little more than one ray. The disadvantage is
 //! that the errors of the block's pixels are correlated.
 //!
-//! Primary and secondary vertices must be non-specular, since a mirror shows each pixel a different surface. Paths
-//! with other vertices are traced alone.
+//! Primary and secondary vertices must be non-specular, since a mirror shows each pixel a different surface, and the
+//! camera must not be inside a solid body. Other paths are traced alone.
 
 use super::bounds::Receiver;
 use super::bsdf::{Bsdf, Lobes, ScatterKind};
 use super::light::LightSample;
+use super::medium::Media;
 use super::path::{self, Observer, PathLength, PathSegment, PrimaryHit, Strategy};
 use super::sampler::Sampler;
 use super::vertex::{Surface, Vertex};
@@ -81,6 +82,8 @@ impl<T> Scratch<T> {
 pub struct Start {
     /// The camera ray; its direction has unit length.
     pub ray: Ray,
+    /// The media around the eye.
+    pub media: Media,
     /// Uniform random numbers in `[0, 1)` that select the light sample at the primary vertex.
     pub light_u: (f64, f32),
     pub length: PathLength,
@@ -154,8 +157,8 @@ pub fn trace<W: ReplayObserver>(
     let roulette_weight = primaries.iter().flatten().map(|s| s.roulette_weight).fold(Vec3::ZERO, Vec3::max);
     scratch.tape.expect(primaries.iter().flatten().map(|s| (s.vertex.mesh, !s.bsdf.is_diffuse())));
     for number in 0..starts.len() {
-        let scattered = primaries[number].as_mut().and_then(|s| s.scattered.take());
-        if let (Some(primary), Some(scattered)) = (&primaries[number], &scattered)
+        let mut scattered = primaries[number].as_mut().and_then(|s| s.scattered.take());
+        if let (Some(primary), Some(scattered)) = (&primaries[number], &mut scattered)
             && let Some(secondary) = trace_secondary(
                 world,
                 primary,
@@ -167,7 +170,7 @@ pub fn trace<W: ReplayObserver>(
             )
         {
             let viewers = Viewers::of(world, &secondary, number, scattered, &primaries);
-            viewers.replay(&secondary, &primaries, observers, scratch);
+            viewers.replay(world, &secondary, &primaries, observers, scratch);
         }
     }
 }
@@ -179,14 +182,14 @@ fn trace_primary<'w, W: ReplayObserver>(
     start: &mut Start,
     observer: &mut W,
 ) -> Option<PrimaryVertex<'w>> {
-    let Start { ray, light_u, length, sampler } = start;
-    let segment = PathSegment::from_eye(*ray, *light_u);
-    let (vertex, distance) = path::intersect(world, &segment, sampler, observer)?;
+    let Start { ray, media, light_u, length, sampler } = start;
+    let mut segment = PathSegment::from_eye(*ray, *media, *light_u);
+    let (vertex, distance) = path::intersect(world, &mut segment, sampler, observer)?;
     if length.max_bounces == 0 {
         return None;
     }
-    let bsdf = vertex.bsdf(world, -segment.ray.direction);
-    if !bsdf.is_shareable() {
+    let bsdf = vertex.bsdf(world, *media, || sampler.ray_seed(), -segment.ray.direction);
+    if !bsdf.is_shareable() || !media.is_none() {
         if let Some(next) = path::continue_path(world, &segment, &vertex, distance, 0, length, sampler, observer) {
             path::walk(world, next, 1, *length, sampler, observer);
         }
@@ -195,13 +198,14 @@ fn trace_primary<'w, W: ReplayObserver>(
     observer.primary_hit(|| PrimaryHit::new(&vertex, &bsdf, distance));
     let receiver = Receiver { position: vertex.position, normal: bsdf.normal() };
     if let Some(light) = path::sample_light(world, &receiver, &bsdf, segment.light_u) {
-        path::add_direct_light(world, &vertex, &bsdf, Vec3::ONE, &light, observer);
+        path::add_direct_light(world, &vertex, &bsdf, Vec3::ONE, Media::NONE, &light, observer);
     }
     let scattered = path::sample_direction(&bsdf, sampler).and_then(|(sample, light_u)| {
         let ScatterKind::NonSpecular(pdf) = sample.kind else { return None };
         let (direction, throughput) = (sample.direction, sample.weight);
         let mis = Some((receiver, pdf));
-        let segment = PathSegment { ray: vertex.ray(direction), from: vertex.id, throughput, mis, light_u };
+        let (ray, from) = (vertex.ray(direction), vertex.id);
+        let segment = PathSegment { ray, from, throughput, mis, media: Media::NONE, light_u };
         let brings = throughput.is_finite() && throughput != Vec3::ZERO;
         brings.then_some(ScatteredSegment { direction, lobes: sample.lobes, pdf, segment })
     });
@@ -217,7 +221,7 @@ fn trace_primary<'w, W: ReplayObserver>(
 fn trace_secondary<'w, W: ReplayObserver>(
     world: &'w World,
     primary: &PrimaryVertex,
-    scattered: &ScatteredSegment,
+    scattered: &mut ScatteredSegment,
     roulette_weight: Vec3,
     start: &mut Start,
     observer: &mut W,
@@ -231,8 +235,8 @@ fn trace_secondary<'w, W: ReplayObserver>(
     if length.max_bounces == 1 {
         return None;
     }
-    let surface = vertex.surface(world);
-    let bsdf = surface.seen_from(-*direction);
+    let surface = vertex.surface(world, Media::NONE, || sampler.ray_seed());
+    let bsdf = surface.seen_from(world, -*direction);
     if !bsdf.is_shareable() || !is_surely_visible(world, primary, &vertex) {
         if let Some(next) = path::continue_path(world, segment, &vertex, distance, 1, length, sampler, observer) {
             path::walk(world, next, 2, *length, sampler, observer);
@@ -260,7 +264,7 @@ fn record_view_independent<'w, T: Tape>(
     tape: &mut T,
 ) -> Option<SecondaryLight<'w>> {
     tape.begin();
-    if let Some(next) = path::scatter(world, vertex, bsdf, Vec3::ONE, None, light_u, sampler, tape) {
+    if let Some(next) = path::scatter(world, vertex, bsdf, Vec3::ONE, None, Media::NONE, light_u, sampler, tape) {
         path::walk(world, next, 2, length, sampler, tape);
     }
     tape.end().then_some(SecondaryLight::ViewIndependent)
@@ -287,7 +291,7 @@ fn record_view_dependent<'w, T: Tape>(
         if lobes.sum() == Vec3::ZERO {
             return None;
         }
-        let importance = path::connection_weight(world, vertex, &light, pdf, Some(panes));
+        let importance = path::connection_weight(world, vertex, Media::NONE, &light, pdf, Some(panes));
         (importance != Vec3::ZERO).then_some((light, importance))
     });
     let bsdf_sample = path::sample_direction(bsdf, sampler).and_then(|(scattered, light_u)| {
@@ -297,6 +301,7 @@ fn record_view_dependent<'w, T: Tape>(
             from: vertex.id,
             throughput: Vec3::ONE,
             mis: Some((receiver, pdf)),
+            media: Media::NONE,
             light_u,
         };
         let length = PathLength {
@@ -386,6 +391,7 @@ impl Viewers {
     /// Passes the light of the secondary vertex on to the observers of all its viewers.
     fn replay<W: ReplayObserver>(
         &self,
+        world: &World,
         secondary: &SecondaryVertex,
         primaries: &[Option<PrimaryVertex>; MAX_SHARED],
         observers: &mut [W],
@@ -403,7 +409,7 @@ impl Viewers {
             };
             observer.restart();
             observer.scatter(primary.vertex.mesh, ScatterKind::NonSpecular(viewer.pdf), viewer.lobes);
-            let bsdf = surface.seen_from(-viewer.direction);
+            let bsdf = surface.seen_from(world, -viewer.direction);
             if let Some((light, weight)) = light_sample {
                 let (lobes, _) = bsdf.eval(light.direction);
                 observer.take_panes(&scratch.panes);

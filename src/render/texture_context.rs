@@ -1,7 +1,7 @@
 //! Texture look-ups at a surface point: opacity, BSDF parameters, and tangents for normal maps.
 
 use super::bsdf::BsdfParams;
-use super::compiled_material::{self, CompiledMaterial};
+use super::compiled_material::{self, CompiledMaterial, SolidParams};
 use super::facet::Facet;
 use crate::scene::{Material, Mesh, Scene, TextureRef};
 use glam::{Vec2, Vec3, Vec4};
@@ -33,6 +33,18 @@ impl<'w> TextureContext<'w> {
         if !compiled.is_textured {
             return compiled.bsdf_params;
         }
+        let (base, metallic, roughness) = self.factors();
+        compiled_material::bsdf_params(self.material, base, metallic, roughness)
+    }
+
+    /// Returns the parameters of a solid body's material at this point.
+    pub fn solid_params(&self) -> SolidParams {
+        let (base, metallic, roughness) = self.factors();
+        compiled_material::solid_params(self.material, base, metallic, roughness)
+    }
+
+    /// Returns the base colour, the metalness and the roughness at this point.
+    fn factors(&self) -> (Vec3, f32, f32) {
         let material = self.material;
         let mut base = material.base_color * self.vertex_colour().truncate();
         if let Some(texture) = &material.base_color_texture {
@@ -43,7 +55,7 @@ impl<'w> TextureContext<'w> {
             let texel = self.look_up(texture);
             (roughness, metallic) = (roughness * texel.y, metallic * texel.z);
         }
-        compiled_material::bsdf_params(material, base, metallic, roughness)
+        (base, metallic, roughness)
     }
 
     /// Returns the interpolated vertex colour; 1 if the mesh has no vertex colours.

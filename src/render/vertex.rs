@@ -1,11 +1,14 @@
 //! Vertices of light paths: surface points with position, orientation and material.
 
-use super::bsdf::{Bsdf, BsdfParams};
+use super::bsdf::{Bsdf, BsdfParams, Interface};
+use super::compiled_material::CompiledMaterial;
 use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
+use super::medium::{self, Media};
 use super::texture_context::TextureContext;
 use super::world::World;
 use crate::accel::{Hit, Ray};
+use crate::rng;
 use glam::{Vec2, Vec3};
 
 pub struct Vertex {
@@ -66,17 +69,23 @@ impl Vertex {
         Ray::new(self.off_surface(direction), direction)
     }
 
-    /// Returns the BSDF at this point for a viewer in direction `wo`.
+    /// Returns the BSDF at this point, which a path meets from direction `wo` among `media`. `seed` returns the seed of
+    /// a random decision (see [`Vertex::surface`]).
     #[inline]
-    pub fn bsdf<'w>(&self, world: &'w World, wo: Vec3) -> Bsdf<'w> {
-        self.surface(world).seen_from(wo)
+    pub fn bsdf<'w>(&self, world: &'w World, media: Media, seed: impl Fn() -> u64, wo: Vec3) -> Bsdf<'w> {
+        self.surface(world, media, seed).seen_from(world, wo)
     }
 
-    /// Returns the shading data of the point that do not depend on the viewer.
+    /// Returns the shading data of the point that do not depend on the direction of the viewer, which is among `media`.
+    /// If a solid body's material is partly opaque, a random decision tells whether the point is clear or opaque;
+    /// `seed` returns the seed of that decision.
     #[inline]
-    pub fn surface<'w>(&self, world: &'w World) -> Surface<'w> {
+    pub fn surface<'w>(&self, world: &'w World, media: Media, seed: impl Fn() -> u64) -> Surface<'w> {
         let facet = world.facet(self.id);
         let compiled = world.compiled_material(facet);
+        if compiled.medium != medium::AIR {
+            return self.surface_of_solid(world, compiled, media, seed());
+        }
         // Skip the look-ups of normals and textures if the surface does not need them, as is the case for most
         // surfaces.
         let shading =
@@ -86,7 +95,28 @@ impl Vertex {
         } else {
             compiled.bsdf_params
         };
-        Surface { bsdf_params, layered: compiled.layered, normals: [shading, self.normal], table: world.albedo_table() }
+        let (normals, table) = ([shading, self.normal], world.albedo_table());
+        Surface { kind: SurfaceKind::Layers { bsdf_params, layered: compiled.layered }, normals, table }
+    }
+
+    #[inline(never)]
+    fn surface_of_solid<'w>(
+        &self,
+        world: &'w World,
+        compiled: &CompiledMaterial,
+        media: Media,
+        seed: u64,
+    ) -> Surface<'w> {
+        let facet = world.facet(self.id);
+        let solid = TextureContext::new(world.scene(), facet, self.triangle, self.barycentric).solid_params();
+        let u = (rng::hash(seed, &[u64::from(self.id), CLEAR]) >> 40) as f32 / (1 << 24) as f32;
+        let kind = if u < solid.clear {
+            SurfaceKind::Boundary { media, medium: compiled.medium, tint: solid.tint, roughness: solid.roughness }
+        } else {
+            SurfaceKind::Layers { bsdf_params: solid.opaque, layered: true }
+        };
+        let shading = self.shading_normal(world, facet);
+        Surface { kind, normals: [shading, self.normal], table: world.albedo_table() }
     }
 
     fn shading_normal(&self, world: &World, facet: &Facet) -> Vec3 {
@@ -112,20 +142,39 @@ impl Vertex {
     }
 }
 
-/// The shading data of a surface point that do not depend on the viewer.
+/// Number that distinguishes the random decision between clear and opaque from other decisions of a path.
+const CLEAR: u64 = 1;
+
+/// The shading data of a surface point that do not depend on the direction of the viewer.
 pub struct Surface<'w> {
-    bsdf_params: BsdfParams,
-    /// Whether the material may have layers besides the diffuse one.
-    layered: bool,
+    kind: SurfaceKind,
     /// Shading normal and geometric normal, both pointing to the front side.
     normals: [Vec3; 2],
     table: Option<&'w AlbedoTable>,
 }
 
+enum SurfaceKind {
+    Layers {
+        bsdf_params: BsdfParams,
+        /// Whether the material may have layers besides the diffuse one.
+        layered: bool,
+    },
+    /// A clear point of a solid body's surface; `media` are the media of the viewer, `medium` fills the body.
+    Boundary { media: Media, medium: u16, tint: Vec3, roughness: f32 },
+}
+
 impl<'w> Surface<'w> {
-    /// Returns the BSDF for a viewer in direction `wo`.
+    /// Returns the BSDF for a viewer in direction `wo`; `world` is the scene of the point.
     #[inline]
-    pub fn seen_from(&self, wo: Vec3) -> Bsdf<'w> {
-        Bsdf::new(&self.bsdf_params, self.layered, self.normals, wo, self.table)
+    pub fn seen_from(&self, world: &World, wo: Vec3) -> Bsdf<'w> {
+        match &self.kind {
+            SurfaceKind::Layers { bsdf_params, layered } => {
+                Bsdf::new(bsdf_params, *layered, self.normals, wo, self.table)
+            }
+            &SurfaceKind::Boundary { media, medium, tint, roughness } => {
+                let boundary = media.boundary(medium, self.normals[1].dot(wo) > 0.0, world.media());
+                Bsdf::boundary(&Interface { boundary, tint, roughness }, self.normals, wo)
+            }
+        }
     }
 }

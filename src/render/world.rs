@@ -6,6 +6,7 @@ use super::facet::{self, Facet, NONE};
 use super::ggx::AlbedoTable;
 use super::light::{LampVisibility, Lights};
 use super::luminaires::{FaceLuminaire, Luminaires};
+use super::medium::{self, Media, Medium};
 use super::requirements::{self, Requirements};
 use super::texture_context::TextureContext;
 use super::vicinity::Vicinity;
@@ -40,6 +41,8 @@ pub struct World {
     faces: Arc<Vec<Mesh>>,
     facets: Arc<Vec<Facet>>,
     compiled_materials: Arc<Vec<CompiledMaterial>>,
+    /// The media of air and of solid glass, by their numbers.
+    media: Arc<Vec<Medium>>,
     lights: Lights,
     albedo_table: Option<Arc<AlbedoTable>>,
     requirements: Arc<Requirements>,
@@ -89,6 +92,8 @@ impl World {
         let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
         let (mut requirements, mut compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
+        let (media, numbers) = medium::number(&scene.materials)?;
+        compiled_materials.iter_mut().zip(numbers).for_each(|(compiled, number)| compiled.medium = number);
         compiled_materials.push(CompiledMaterial::BLACK);
         requirements.flat_triangles = accel.dropped();
         requirements.keep_surfaces_that_emit(lights.pieces());
@@ -104,6 +109,7 @@ impl World {
             faces: Arc::new(faces),
             facets: Arc::new(facets),
             compiled_materials: Arc::new(compiled_materials),
+            media: Arc::new(media),
             lights,
             albedo_table: albedo_table.map(Arc::new),
             requirements: Arc::new(requirements),
@@ -390,6 +396,18 @@ impl World {
         if blocked { Vec3::ZERO } else { share.as_vec3() }
     }
 
+    /// Returns the media of air and of solid glass, by their numbers.
+    #[inline]
+    pub(super) fn media(&self) -> &[Medium] {
+        &self.media
+    }
+
+    /// Returns the medium that fills a point among `media`.
+    #[inline]
+    pub(super) fn medium(&self, media: Media) -> &Medium {
+        &self.media[usize::from(media.innermost())]
+    }
+
     /// Whether any surface of the scene lets light through.
     #[inline]
     pub(super) fn is_see_through(&self) -> bool {
@@ -417,7 +435,8 @@ impl World {
             AlphaMode::Mask(cutoff) => f32::from(u8::from(context.opacity() >= cutoff)),
             AlphaMode::Blend => context.opacity().clamp(0.0, 1.0),
         };
-        let through = if context.material.transmission > 0.0 && coverage > 0.0 {
+        // No straight path leads through the surface of a solid.
+        let through = if context.material.transmission > 0.0 && compiled.medium == medium::AIR && coverage > 0.0 {
             context.bsdf_params(compiled).through(facet.normal.dot(direction.normalize_or_zero()))
         } else {
             Vec3::ZERO
@@ -542,6 +561,13 @@ fn check_material(scene: &Scene, material: &Material) -> Result<()> {
     let finite = material.base_color.is_finite() && material.emission.is_finite();
     if !finite || numbers.iter().any(|v| !v.is_finite()) || material.ior < 1.0 {
         return Err(Error::argument("its numbers must be finite and its index of refraction at least 1"));
+    }
+    let is_share = |v: Vec3| v.cmpge(Vec3::ZERO).all() && v.cmple(Vec3::ONE).all();
+    let is_volume = material.thickness >= 0.0 && material.attenuation_distance > 0.0;
+    if !is_volume || !material.thickness.is_finite() || !is_share(material.attenuation_color) {
+        let message = "its thickness must be finite and at least 0, its attenuation distance positive, and its \
+                       attenuation colour in [0, 1]";
+        return Err(Error::argument(message));
     }
     Ok(())
 }

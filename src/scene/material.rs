@@ -1,4 +1,4 @@
-//! glTF 2.0 metallic-roughness materials, with transmission for clear glass.
+//! glTF 2.0 metallic-roughness materials, with transmission for thin panes and for solid glass.
 
 use glam::{Mat3, Vec3};
 
@@ -57,6 +57,14 @@ pub struct Material {
     pub transmission: f32,
     /// Index of refraction of the dielectric layer, at least 1; a layer of index 1 reflects nothing.
     pub ior: f32,
+    /// If positive, and `transmission` too, the meshes of this material bound solid bodies, which refract light and
+    /// absorb it inside. If 0, they are thin panes. The renderer ignores the value otherwise, as the geometry states
+    /// how thick the body is (`KHR_materials_volume`).
+    pub thickness: f32,
+    /// Share of the light, per channel in `[0, 1]`, that is left after `attenuation_distance` metres inside a solid.
+    pub attenuation_color: Vec3,
+    /// In metres, positive; infinite if the solid absorbs nothing.
+    pub attenuation_distance: f32,
 }
 
 impl Default for Material {
@@ -77,6 +85,9 @@ impl Default for Material {
             double_sided: false,
             transmission: 0.0,
             ior: 1.5,
+            thickness: 0.0,
+            attenuation_color: Vec3::ONE,
+            attenuation_distance: f32::INFINITY,
         }
     }
 }
@@ -86,5 +97,10 @@ impl Material {
     /// layer.
     pub fn diffuse(name: &str, base_color: Vec3) -> Self {
         Self { name: name.into(), base_color, metallic: 0.0, ior: 1.0, double_sided: true, ..Self::default() }
+    }
+
+    /// Whether the surfaces of this material bound solid, transparent bodies.
+    pub fn is_solid(&self) -> bool {
+        self.thickness > 0.0 && self.transmission > 0.0
     }
 }

@@ -1,7 +1,7 @@
 //! Triangle meshes.
 
 use crate::rng::hash;
-use glam::{Vec2, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// Triangles in world space. Front faces are wound counter-clockwise.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -62,6 +62,18 @@ impl Mesh {
         });
         !self.triangles.is_empty() && boundary == 0
     }
+
+    /// Returns the volume of a closed mesh in m³; negative if its front sides face inwards.
+    pub fn volume(&self) -> f64 {
+        // Sum the volumes of pyramids with their tips at the first vertex, so that distance from the origin does not
+        // spoil the sum.
+        let tip = self.positions.first().map_or(DVec3::ZERO, |p| p.as_dvec3());
+        let pyramid = |triangle| {
+            let [a, b, c] = self.corners(triangle).map(|p| p.as_dvec3() - tip);
+            a.dot(b.cross(c)) / 6.0
+        };
+        (0..self.triangles.len()).map(pyramid).sum()
+    }
 }
 
 #[cfg(test)]
@@ -83,6 +95,11 @@ mod tests {
             }
         }
         assert!(cube.is_closed());
+        let volume = cube.volume().abs();
+        assert!((volume - 8.0).abs() < 1e-12, "{volume}");
+        let mut turned = cube.clone();
+        turned.triangles.iter_mut().for_each(|t| t.swap(1, 2));
+        assert_eq!(turned.volume(), -cube.volume());
         // Zeros of either sign are the same position.
         cube.positions.iter_mut().for_each(|p| p.x += 1.0);
         corner.x = 0.0;

@@ -77,6 +77,9 @@ impl Scene {
         check_range("roughness", material.roughness, 0.0, 1.0)?;
         check_range("transmission", material.transmission, 0.0, 1.0)?;
         check_range("ior", material.ior, 1.0, f32::MAX)?;
+        check_range("thickness", material.thickness, 0.0, f32::MAX)?;
+        check_colour("attenuation_color", material.attenuation_color)?;
+        check_range("attenuation_distance", material.attenuation_distance, f32::MIN_POSITIVE, f32::INFINITY)?;
         check_range("normal_scale", material.normal_scale, f32::MIN, f32::MAX)?;
         check_light("emission", material.emission)?;
         self.check_reference("base_color_texture", material.base_color_texture)?;
@@ -292,7 +295,7 @@ mod tests {
         for light in [hang(Vec3::NEG_Y, Vec3::X, 1), hang(Vec3::ONE, Vec3::X, 0), hang(Vec3::X, Vec3::X, 0)] {
             assert!(hang_in(light).validate().unwrap_err().message.contains("light 0"));
         }
-        let defects: [Defect; 26] = [
+        let defects: [Defect; 29] = [
             ("vertex 2", |s| s.meshes[0].positions[2].x = -1.1e15),
             ("Desk", |s| s.meshes[0].positions[1].y = f32::NAN),
             ("vertex 1", |s| s.meshes[0].positions[1].y = f32::INFINITY),
@@ -307,6 +310,9 @@ mod tests {
             ("Oak", |s| s.materials[0].base_color.x = 1.5),
             ("Oak", |s| s.materials[0].roughness = -0.1),
             ("Oak", |s| s.materials[0].ior = 0.5),
+            ("Oak", |s| s.materials[0].thickness = -1.0),
+            ("Oak", |s| s.materials[0].attenuation_color.y = f32::NAN),
+            ("Oak", |s| s.materials[0].attenuation_distance = 0.0),
             ("Oak", |s| s.materials[0].emission.z = f32::INFINITY),
             ("Oak", |s| s.materials[0].normal_texture = Some(TextureRef::new(1))),
             ("Oak", |s| s.materials[0].normal_texture = Some(TextureRef { uv_set: 2, ..TextureRef::new(0) })),

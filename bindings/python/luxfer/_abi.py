@@ -108,6 +108,7 @@ LUXFER_SCATTERING_GLOSSY = 2
 LUXFER_SCATTERING_MIRROR = 4
 LUXFER_SCATTERING_GLASS = 8
 LUXFER_SCATTERING_ALPHA = 16
+LUXFER_SCATTERING_REFRACTION = 32
 LUXFER_LIGHTS_SURFACE = 1
 LUXFER_LIGHTS_TEXTURE = 2
 LUXFER_LIGHTS_POINT = 4
@@ -591,6 +592,10 @@ class luxfer_material_params(Structure):
         ("alpha_mode", c_int32),
         ("alpha_cutoff", c_float),
         ("normal_scale", c_float),
+        ("thickness", c_float),
+        ("attenuation_color", c_float * 3),
+        ("attenuation_distance", c_float),
+        ("reserved", c_uint32),
     ]
     enumerations: dict[str, type] = {"alpha_mode": types.AlphaMode}
     struct_type = LUXFER_STRUCT_MATERIAL_PARAMS

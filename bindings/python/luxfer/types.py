@@ -1086,6 +1086,8 @@ class Scattering(IntFlag):
     """At least one surface is a clear pane of glass."""
     ALPHA = 16
     """At least one surface is partly transparent because of its alpha."""
+    REFRACTION = 32
+    """At least one body is solid glass, which refracts."""
 
 
 class View(IntFlag):
@@ -1321,9 +1323,9 @@ class MaterialParams(TypedDict, total=False):
     emission: Sequence[float]
     """Emission per channel in cd/m², each in [0, 1e15]; default 0."""
     transmission: float
-    """Share of the light entering the non-metallic part of the surface that passes straight through, as through
-    a thin clear pane, instead of being reflected diffusely, in [0, 1]; default 0. base_color tints this light,
-    and roughness does not blur it."""
+    """Share of the light entering the non-metallic part of the surface that passes through, instead of being
+    reflected diffusely, in [0, 1]; default 0. base_color tints this light. If thickness is 0, it passes
+    straight through, as through a thin clear pane, and roughness does not blur it."""
     ior: float
     """Index of refraction in [1, 4]; default 1.5. With 1, only metal reflects specularly."""
     alpha: float
@@ -1334,6 +1336,17 @@ class MaterialParams(TypedDict, total=False):
     """Threshold of alpha for AlphaMode.MASK, >= 0; default 0.5."""
     normal_scale: float
     """Strength of the normal texture: a factor for the x and y of its normals, finite; default 1."""
+    thickness: float
+    """If above 0, and transmission too, the meshes of this material are the surfaces of solid bodies, which
+    refract and absorb light: closed meshes whose front sides, from which the triangles wind counter-clockwise,
+    face outwards. base_color tints the light whenever it passes the surface, and roughness blurs it. If 0, the
+    default, the meshes are thin panes. The value itself does not matter: the mesh states how thick the body is.
+    In metres, finite."""
+    attenuation_color: Sequence[float]
+    """Share of the light that is left after attenuation_distance inside a solid body, each channel in [0, 1];
+    default 1."""
+    attenuation_distance: float
+    """Distance in metres, > 0; infinite, the default: the body absorbs nothing."""
 
 
 @dataclass(frozen=True)

@@ -43,7 +43,7 @@ impl<'a> Accumulator<'a> {
     fn sized(world: &'a World, camera: &'a Camera, params: &'a Params, grid: Grid) -> Result<Self> {
         let pixels = try_vec(grid.tiles() * AREA, Pixel::default())?;
         let layers = Layers::new(world, camera, &params.outputs, grid.tiles(), AREA)?;
-        let camera_rays = CameraRays::new(camera, params);
+        let camera_rays = CameraRays::new(world, camera, params);
         let learning = world.learning()?;
         Ok(Self { world, learning, camera_rays, seed: params.seed, grid, pixels, layers, discarded: AtomicU64::new(0) })
     }

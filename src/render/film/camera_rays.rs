@@ -1,6 +1,8 @@
 //! Camera paths: generates the rays of a pixel and traces the radiance along them.
 
+use crate::render::immersion::media_at;
 use crate::render::layers::Recorder;
+use crate::render::medium::Media;
 use crate::render::params::Params;
 use crate::render::path::{self, PathLength};
 use crate::render::sampler::Sampler;
@@ -46,16 +48,16 @@ fn radiance(
     sampler: Sampler,
     recorder: Option<&mut Recorder>,
 ) -> Vec3 {
-    let Start { ray, light_u, length, mut sampler } = camera_rays.start(world, at, length, sampler);
+    let Start { ray, media, light_u, length, mut sampler } = camera_rays.start(world, at, length, sampler);
     match recorder {
         None => {
             let mut sum = SumTape::default();
-            path::trace(world, ray, light_u, length, &mut sampler, &mut sum);
+            path::trace(world, ray, media, light_u, length, &mut sampler, &mut sum);
             sum.0
         }
         Some(recorder) => {
             recorder.start();
-            path::trace(world, ray, light_u, length, &mut sampler, recorder);
+            path::trace(world, ray, media, light_u, length, &mut sampler, recorder);
             recorder.end_path()
         }
     }
@@ -65,19 +67,22 @@ fn radiance(
 /// `right` + y `down` before normalisation.
 pub struct CameraRays {
     position: Vec3,
+    /// The media around the camera.
+    media: Media,
     corner: Vec3,
     right: Vec3,
     down: Vec3,
 }
 
 impl CameraRays {
-    pub fn new(camera: &Camera, params: &Params) -> Self {
+    pub fn new(world: &World, camera: &Camera, params: &Params) -> Self {
         let aspect = params.width as f32 / params.height as f32;
         let at = |x: f32, y: f32| camera.direction(x, y, aspect);
         let corner = at(0.0, 0.0);
         let right = (at(1.0, 0.0) - corner) / params.width as f32;
         let down = (at(0.0, 1.0) - corner) / params.height as f32;
-        Self { position: camera.position, corner, right, down }
+        let media = media_at(world, world.from_scene(camera.position));
+        Self { position: camera.position, media, corner, right, down }
     }
 
     /// Starts a path through the pixel `at`. Its first random numbers select the point in the pixel (box filter) and
@@ -85,7 +90,8 @@ impl CameraRays {
     pub fn start(&self, world: &World, at: [usize; 2], length: PathLength, mut sampler: Sampler) -> Start {
         let place = sampler.next();
         let direction = self.direction(at[0] as f64 + place.fine(0), at[1] as f64 + place.fine(1));
-        Start { ray: world.ray(self.position, direction), light_u: (place.fine(2), place.get(3)), length, sampler }
+        let light_u = (place.fine(2), place.get(3));
+        Start { ray: world.ray(self.position, direction), media: self.media, light_u, length, sampler }
     }
 
     /// Returns the unit direction through a point of the image, given in pixels.

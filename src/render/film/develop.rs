@@ -19,7 +19,9 @@ impl Accumulator<'_> {
         let lamp_visibility = self.learning.lamp_visibility()?;
         let mut requirements = self.world.requirements().left_out();
         requirements.extend(self.world.scene().unrendered.iter().map(|unrendered| format!("{unrendered}.")));
-        requirements.extend(lamp_visibility.filter(|seen| seen.hidden > 0).map(|seen| seen.sentence()));
+        // Lamps that no light sample reaches may still shine through solid glass.
+        let is_certain = !self.world.requirements().refraction;
+        requirements.extend(lamp_visibility.filter(|seen| seen.hidden > 0 && is_certain).map(|seen| seen.sentence()));
         Ok(Film {
             beauty,
             layers,

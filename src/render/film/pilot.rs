@@ -120,7 +120,7 @@ pub fn run(
     params.check()?;
     params::check_camera(camera)?;
     let grid = Grid { width: params.width, height: params.height };
-    let camera_rays = CameraRays::new(camera, params);
+    let camera_rays = CameraRays::new(world, camera, params);
     let params = &Params { seed: params.seed ^ SALT, ..params.clone() };
     let learning = world.learning()?;
     let prepass = Prepass::new(&learning, &camera_rays, params, job.part(0.0, 0.05))?;

@@ -57,7 +57,7 @@ impl Sums {
     pub fn trace(world: &World, camera: &Camera, params: &Params, part: &Part, job: Job) -> Result<Self> {
         let layers = Layers::new(world, camera, &params.outputs, 0, AREA)?;
         let mut sums = Self::new(part, layers.as_ref())?;
-        let camera_rays = CameraRays::new(camera, params);
+        let camera_rays = CameraRays::new(world, camera, params);
         let learning = world.learning()?;
         let prepass = Prepass::new(&learning, &camera_rays, params, job.part(0.0, 0.01))?;
         let world = &learning.settled()?;

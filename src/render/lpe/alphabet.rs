@@ -19,11 +19,14 @@ pub enum Scatter {
     Glossy,
     Mirror,
     Pane,
+    /// Refraction by the smooth surface of a solid.
+    Refraction,
+    RoughRefraction,
 }
 
 pub struct Alphabet {
-    /// Scattering events: four for each class of meshes, in the order of [`Scatter`]. Meshes belong to one class if no
-    /// expression distinguishes them.
+    /// Scattering events: one of each kind for each class of meshes, in the order of [`Scatter`]. Meshes belong to one
+    /// class if no expression distinguishes them.
     pub scatters: Vec<Event>,
     /// Light events, at the light end of a path.
     pub lights: Vec<Event>,
@@ -195,11 +198,13 @@ fn punctual_label(index: usize) -> String {
 }
 
 /// Types and modes of the scattering events, in the order of [`Scatter`].
-pub const SCATTERS: [(u8, u8); 4] = [
+pub const SCATTERS: [(u8, u8); 6] = [
     (kind::REFLECT, mode::DIFFUSE),
     (kind::REFLECT, mode::GLOSSY),
     (kind::REFLECT, mode::SINGULAR),
     (kind::TRANSMIT, mode::SINGULAR | mode::STRAIGHT),
+    (kind::TRANSMIT, mode::SINGULAR),
+    (kind::TRANSMIT, mode::GLOSSY),
 ];
 
 fn surface_kinds(emitter_as: EmitterAs) -> u8 {

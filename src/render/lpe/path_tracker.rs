@@ -140,6 +140,8 @@ impl<'a> PathTracker<'a> {
             ScatterKind::NonSpecular(_) => only_layer(lobes),
             ScatterKind::Mirror => Some(Scatter::Mirror),
             ScatterKind::Pane => Some(Scatter::Pane),
+            ScatterKind::Refraction { is_rough: false } => Some(Scatter::Refraction),
+            ScatterKind::Refraction { is_rough: true } => Some(Scatter::RoughRefraction),
         };
         match (scatter, &mut self.components[..]) {
             // Handle the common case of a single component.

@@ -206,7 +206,10 @@ fn the_layers_of_a_paint_are_separated() {
     let params = Params { width: 4, height: 4, samples: 4, ..Params::default() };
     let film = render(&world, &camera, &with(&params, &FIVE, &[]));
     let vertex = Vertex::new(&world, world.id(0, 0), Vec2::new(0.0, 0.5));
-    let lobes = vertex.bsdf(&world, camera.position.normalize()).eval(Vec3::new(-1.0, 1.0, 0.0).normalize()).0;
+    let lobes = vertex
+        .bsdf(&world, medium::Media::NONE, || 0, camera.position.normalize())
+        .eval(Vec3::new(-1.0, 1.0, 0.0).normalize())
+        .0;
     for (name, lobe) in [("LDE", lobes.diffuse), ("LSE", lobes.glossy)] {
         let expected = lobe * 30.0 / 2.0;
         let value = layer(&film, name).rgb(2, 2);

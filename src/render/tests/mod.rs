@@ -20,6 +20,7 @@ mod place;
 mod refusal;
 mod requirements;
 mod shared;
+mod solids;
 mod vertex_colours;
 
 use super::*;

@@ -60,7 +60,15 @@ fn apart(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: u64
         for index in 0..64 {
             let mut sampler = Sampler::new(crate::rng::hash(trial, &[1, i as u64]), index);
             let first = sampler.next();
-            path::trace(world, rays[i], (first.fine(2), first.get(3)), length, &mut sampler, &mut sum);
+            path::trace(
+                world,
+                rays[i],
+                medium::Media::NONE,
+                (first.fine(2), first.get(3)),
+                length,
+                &mut sampler,
+                &mut sum,
+            );
         }
         sum.0 / 64.0
     })
@@ -73,7 +81,7 @@ fn together(world: &World, rays: &[Ray; MAX_SHARED], length: PathLength, trial: 
         let start = |i: usize| {
             let mut sampler = Sampler::new(crate::rng::hash(trial, &[2, i as u64]), index);
             let first = sampler.next();
-            Start { ray: rays[i], light_u: (first.fine(2), first.get(3)), length, sampler }
+            Start { ray: rays[i], media: medium::Media::NONE, light_u: (first.fine(2), first.get(3)), length, sampler }
         };
         let mut starts: [Start; MAX_SHARED] = std::array::from_fn(start);
         shared::trace(world, &mut starts, &mut sums, &mut scratch);

@@ -272,6 +272,15 @@ impl Writer {
         if material.transmission > 0.0 {
             extend("KHR_materials_transmission", json!({ "transmissionFactor": material.transmission }));
         }
+        let (colour, distance) = (material.attenuation_color, material.attenuation_distance);
+        if material.thickness > 0.0 || colour != Vec3::ONE || distance < f32::INFINITY {
+            let mut volume = json!({ "thicknessFactor": material.thickness, "attenuationColor": colour.to_array() });
+            // JSON has no infinity, which is the default.
+            if distance < f32::INFINITY {
+                volume["attenuationDistance"] = distance.into();
+            }
+            extend("KHR_materials_volume", volume);
+        }
         if material.ior != 1.5 {
             extend("KHR_materials_ior", json!({ "ior": material.ior }));
         }

@@ -24,7 +24,7 @@ const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
 /// Extensions that this importer reads. A file that requires any other extension is refused. Of a material with
 /// variants, only the default variant is read.
-pub const READ: [&str; 15] = [
+pub const READ: [&str; 16] = [
     DRACO,
     IES,
     INSTANCING,
@@ -38,6 +38,7 @@ pub const READ: [&str; 15] = [
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     "KHR_materials_variants",
+    "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
@@ -51,7 +52,7 @@ type Neutral = (&'static str, f64);
 
 /// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn the
 /// effect off if they have their default values. [convention: glTF extensions]
-const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
+const MATERIALS: [(&str, &str, &[Neutral]); 7] = [
     ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
     ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),
     ("KHR_materials_diffuse_transmission", "no light passes diffusely", &[("diffuseTransmissionFactor", 0.0)]),
@@ -63,7 +64,6 @@ const MATERIALS: [(&str, &str, &[Neutral]); 8] = [
         "reflections have their usual strength and colour",
         &[("specularFactor", 1.0), ("specularColorFactor", 1.0)],
     ),
-    ("KHR_materials_volume", "light is neither refracted nor absorbed inside", &[("thicknessFactor", 0.0)]),
 ];
 
 /// The arrays of objects in the JSON, and the word by which a message names one object of each array.

@@ -74,6 +74,7 @@ impl<'a> Materials<'a> {
         // `KHR_materials_ior`: an index of refraction of 0 stands for a surface that reflects everything. Such surfaces
         // are not modelled; the field `ior` below gets the default, 1.5, instead of 0.
         let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |i| i.ior.0);
+        let volume = extensions.and_then(|e| e.volume.as_ref());
         Ok(Material {
             name: json.name.clone().unwrap_or_else(|| format!("Material {index}")),
             base_color: pbr.base_color.clamp(Vec3::ZERO, Vec3::ONE),
@@ -98,6 +99,14 @@ impl<'a> Materials<'a> {
             double_sided: json.double_sided,
             transmission: transmission.clamp(0.0, 1.0),
             ior: if ior == 0.0 { 1.5 } else { ior.max(1.0) },
+            // The texture of the thickness only serves renderers that do not trace rays.
+            thickness: volume.map_or(0.0, |v| v.thickness_factor.0.clamp(0.0, f32::MAX)),
+            attenuation_color: volume
+                .map_or(Vec3::ONE, |v| Vec3::from(v.attenuation_color.0))
+                .clamp(Vec3::ZERO, Vec3::ONE),
+            attenuation_distance: volume
+                .map_or(f32::INFINITY, |v| v.attenuation_distance.0)
+                .clamp(f32::MIN_POSITIVE, f32::INFINITY),
         })
     }
 

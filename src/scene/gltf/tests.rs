@@ -39,6 +39,9 @@ fn materials() -> Vec<Material> {
     let glass = Material {
         transmission: 0.9,
         ior: 1.33,
+        thickness: 0.02,
+        attenuation_color: Vec3::new(0.5, 0.75, 1.0),
+        attenuation_distance: 0.25,
         alpha: 0.5,
         alpha_mode: AlphaMode::Blend,
         ..Material::diffuse("Glass", Vec3::ONE)
@@ -117,6 +120,8 @@ fn a_scene_is_unchanged_by_export_and_import() {
         assert_eq!((&a.name, a.alpha_mode, a.double_sided), (&b.name, b.alpha_mode, b.double_sided));
         let numbers = |m: &Material| [m.alpha, m.metallic, m.roughness, m.normal_scale, m.transmission, m.ior];
         assert_eq!((a.base_color, numbers(a)), (b.base_color, numbers(b)));
+        let volume = |m: &Material| (m.thickness, m.attenuation_color, m.attenuation_distance);
+        assert_eq!(volume(a), volume(b));
         // Compare products of texture and factor, because the export may divide a texture by its peak and multiply the
         // factor by this peak. Steps of 8-bit sRGB are smaller than 1 % of the peak.
         for v in 0..8 {

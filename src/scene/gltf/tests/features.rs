@@ -105,7 +105,7 @@ fn valid_files_in_unusual_forms_are_read() {
 }
 
 /// The material extensions that are not rendered.
-const UNRENDERED_MATERIALS: [&str; 8] = [
+const UNRENDERED_MATERIALS: [&str; 7] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_diffuse_transmission",
@@ -113,7 +113,6 @@ const UNRENDERED_MATERIALS: [&str; 8] = [
     "KHR_materials_iridescence",
     "KHR_materials_sheen",
     "KHR_materials_specular",
-    "KHR_materials_volume",
 ];
 
 #[test]
@@ -126,7 +125,6 @@ fn each_feature_that_is_not_rendered_is_named() {
         json!({ "iridescenceFactor": 1.0 }),
         json!({ "sheenColorFactor": [0, 0, 0.5] }),
         json!({ "specularColorTexture": { "index": 0 } }),
-        json!({ "thicknessFactor": 0.01 }),
     ];
     for (name, settings) in UNRENDERED_MATERIALS.into_iter().zip(settings) {
         let texts = unrendered(|f| {
@@ -161,6 +159,26 @@ fn each_feature_that_is_not_rendered_is_named() {
         assert!(texts[0].starts_with(name) && texts[0].contains(place), "{}", texts[0]);
     }
     assert!(unrendered(|_| ()).is_empty());
+}
+
+#[test]
+fn volumes_are_read_and_brought_into_range() {
+    let read = |settings: Value| {
+        let file = triangle_file(|f| {
+            f["extensionsRequired"] = json!(["KHR_materials_volume"]);
+            f["materials"] = json!([{ "extensions": { "KHR_materials_volume": settings } }]);
+            f["meshes"][0]["primitives"][0]["material"] = json!(0);
+        });
+        let scene = import(&file, None).unwrap();
+        assert!(scene.unrendered.is_empty() && scene.validate().is_ok());
+        let material = &scene.materials[0];
+        (material.thickness, material.attenuation_color.to_array(), material.attenuation_distance)
+    };
+    assert_eq!(read(json!({})), (0.0, [1.0; 3], f32::INFINITY));
+    let settings = json!({ "thicknessFactor": 0.5, "attenuationColor": [0.25, 0, 1], "attenuationDistance": 2 });
+    assert_eq!(read(settings), (0.5, [0.25, 0.0, 1.0], 2.0));
+    let wild = json!({ "thicknessFactor": -1, "attenuationColor": [2, -1, 0.5], "attenuationDistance": 0 });
+    assert_eq!(read(wild), (0.0, [1.0, 0.0, 0.5], f32::MIN_POSITIVE));
 }
 
 #[test]
