@@ -236,7 +236,7 @@ fn hall(angle: f32) -> Scene {
 fn sun_and_sky() -> Scene {
     let mut scene = alone();
     let sun = Vec3::new(0.4, -0.8, 0.3);
-    scene.lights.push(PunctualLight::Directional { direction: sun, illuminance: Vec3::splat(100_000.0) });
+    scene.lights.push(PunctualLight::parallel(sun, Vec3::splat(100_000.0)));
     scene.environment = Some(Environment::Constant(Vec3::splat(5000.0)));
     scene
 }

@@ -36,6 +36,8 @@ pub struct Requirements {
     pub points: bool,
     pub spots: bool,
     pub directional: bool,
+    /// Whether a directional light with parallel rays emits, rather than a disc like the sun's.
+    pub parallel: bool,
     pub environment: bool,
     /// Number of textures that make scattering or emission vary over a surface (`textures`), and number of all textures
     /// of the scene (`textures_given`).
@@ -142,13 +144,16 @@ impl Requirements {
             let what = "solid glass with its front sides inwards";
             sentences.push(format!("Mesh {mesh} is {what}: light is bent as if glass were outside and air inside."));
         }
-        if self.refraction && (self.points || self.spots || self.directional) {
-            let what = "Solid glass casts a black shadow of lights without a surface (points, spots, the sun)";
+        if self.refraction && (self.points || self.spots || self.parallel) {
+            let what = "Solid glass casts a black shadow of lights without a size (points, spots, parallel light)";
             sentences.push(format!("{what}: their refracted light is left out."));
         }
-        if self.refraction && (self.surfaces || self.environment) {
+        let has_discs = self.directional && !self.parallel;
+        if self.refraction && (self.surfaces || self.environment || has_discs) {
             let what = "No light is sampled through solid glass";
-            sentences.push(format!("{what}: only paths that happen to meet a lamp or the sky behind it bring light."));
+            sentences.push(format!(
+                "{what}: only paths that happen to meet a lamp, the sky or the sun behind it bring light."
+            ));
         }
     }
 }
@@ -337,6 +342,7 @@ impl Requirements {
     /// Adds the kinds of punctual lights, and the environment.
     fn include_lights(&mut self, scene: &Scene) {
         for light in &scene.lights {
+            self.parallel |= matches!(light, PunctualLight::Directional { half_angle: 0.0, illuminance, .. } if illuminance.max_element() > 0.0);
             let (kind, strength) = match light {
                 PunctualLight::Point { intensity, .. } => (&mut self.points, intensity),
                 PunctualLight::Spot { intensity, .. } => (&mut self.spots, intensity),

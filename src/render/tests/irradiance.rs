@@ -136,7 +136,7 @@ fn discs_light_and_are_seen_as_their_luminance_demands() {
         let length = path::PathLength { max_bounces: 8, roulette_weight: None };
         let ray = crate::accel::Ray::new(world.from_scene(origin), direction.normalize());
         let (mut sampler, mut sink) = (sampler::Sampler::new(1, 0), path::Contributions(&mut sum));
-        path::trace(&world, ray, (0.5, 0.5), length, &mut sampler, &mut sink);
+        path::trace(&world, ray, medium::Media::NONE, (0.5, 0.5), length, &mut sampler, &mut sink);
         sum.0.x
     };
     let luminance = 1000.0 / (std::f64::consts::PI * 0.1f64.sin().powi(2));

@@ -297,7 +297,7 @@ fn the_report_states_the_limits_of_solid_glass() {
         assert!(world.requirements().refraction && !world.requirements().glass);
         world.requirements().left_out().join(" ")
     };
-    let sun = PunctualLight::Directional { direction: Vec3::NEG_Y, illuminance: Vec3::ONE };
+    let sun = PunctualLight::parallel(Vec3::NEG_Y, Vec3::ONE);
     let closed = text(ball(Vec3::ZERO, 1.0), Vec::new());
     assert!(!closed.contains("not closed") && !closed.contains("black shadow") && !closed.contains("Nothing is tr"));
     assert!(closed.contains("No light is sampled through solid glass") && !closed.contains("is not bent"), "{closed}");
