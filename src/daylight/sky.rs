@@ -92,7 +92,7 @@ impl Default for Conditions {
 /// The light of the sun: a disc infinitely far away.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SunDisc {
-    /// LightUnit vector towards the sun.
+    /// Unit vector towards the sun.
     pub towards: Vec3,
     /// Illuminance per channel in lux of a plane that faces the sun.
     pub illuminance: Vec3,
