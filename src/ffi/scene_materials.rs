@@ -77,11 +77,9 @@ pub struct luxfer_material_params {
     pub reserved: u32,
 }
 
-/// Size of the struct up to and including normal_scale.
-const SIZE_WITHOUT_VOLUME: usize = 64 + size_of::<usize>();
-const MATERIAL_SIZE: usize = SIZE_WITHOUT_VOLUME + 24;
+const MATERIAL_SIZE: usize = 88 + size_of::<usize>();
 
-versioned!(luxfer_material_params, [SIZE_WITHOUT_VOLUME, MATERIAL_SIZE], {
+versioned!(luxfer_material_params, [MATERIAL_SIZE], {
     Self {
         struct_size: MATERIAL_SIZE as u32,
         double_sided: 1,
