@@ -17,8 +17,8 @@ pub struct Measurements {
     /// Medians of the longer side and of the shorter side over the whole lamps, weighted by their photo pixels. Whole
     /// lamps are lamps that the exemplar shows completely, and lamps that count as whole. 0 without a whole lamp.
     pub lamp_sides: [f64; 2],
-    /// Median, over the whole lamps and weighted likewise, of the share of its bounding box that a lamp covers: 1 for rectangles along the
-    /// axes, π/4 for discs. 0 without a whole lamp.
+    /// Median, over the whole lamps and weighted likewise, of the share of its bounding box that a lamp covers: 1 for
+    /// rectangles along the axes, π/4 for discs. 0 without a whole lamp.
     pub lamp_fill: f64,
     /// The shorter period of the lamps' lattice. Without a lattice, the median distance from a whole lamp to the
     /// nearest other whole lamp, or 0 if there are fewer than two whole lamps.

@@ -318,7 +318,7 @@ void pendants(const Context &context) {
 }
 
 // The sun of a summer's noon, a clear sky with it, and a weather file that is missing.
-void daylight(const Context &context) {
+void skies(const Context &context) {
     luxfer::SunParams noon;
     noon.year = 2026;
     noon.month = 6;
@@ -412,7 +412,7 @@ int main() {
     lighting_transfer(context);
     light(context);
     pendants(context);
-    daylight(context);
+    skies(context);
     plans(context);
     stylisation(context);
     return check::summary("wrapper_stages");

@@ -316,9 +316,9 @@ fn continue_lines(exemplar: &mut Exemplar, law: Law) {
     }
 }
 
-/// Whether outlines are ragged in a part of the exemplar, given by its upper left corner and its size: at the whole lamps
-/// that lie at least partly in it, the median length of a photo pixel is at least [`MIN_RAGGED_PIXEL`] unwarped pixels.
-/// The median is weighted by the photo pixels of the lamps.
+/// Whether outlines are ragged in a part of the exemplar, given by its upper left corner and its size: at the whole
+/// lamps that lie at least partly in it, the median length of a photo pixel is at least [`MIN_RAGGED_PIXEL`] unwarped
+/// pixels. The median is weighted by the photo pixels of the lamps.
 fn is_ragged(exemplar: &Exemplar, corner: DVec2, size: DVec2) -> bool {
     let lamps = exemplar.measured_lamps(Role::is_whole);
     let is_within = |lamp: &&MeasuredLamp| {

@@ -113,8 +113,8 @@ impl BloomFit {
         self.y / self.weight
     }
 
-    /// The side without the given bloom, but at least [`MIN_SIDE`] times the shortest measured side; `None` unless it is
-    /// positive and finite.
+    /// The side without the given bloom, but at least [`MIN_SIDE`] times the shortest measured side; `None` unless it
+    /// is positive and finite.
     fn side(&self, bloom: f64) -> Option<f64> {
         let side = (self.mean() - bloom * self.x / self.weight).max(MIN_SIDE * self.shortest);
         Some(side).filter(|s| s.is_finite() && *s > 0.0)
@@ -138,8 +138,8 @@ mod tests {
 
     #[test]
     fn lengths_get_no_more_bloom_than_widths() {
-        // Lamps of 14 x 70 unwarped pixels with a bloom of half a photo pixel. The nearest one is hidden in part. Alone,
-        // the lengths would be those of lamps of 20 unwarped pixels with a bloom of 5 photo pixels.
+        // Lamps of 14 x 70 unwarped pixels with a bloom of half a photo pixel. The nearest one is hidden in part.
+        // Alone, the lengths would be those of lamps of 20 unwarped pixels with a bloom of 5 photo pixels.
         let lengths = [(43.0, 2.45), (68.0, 4.19), (68.0, 4.71), (66.0, 5.33)];
         assert!(common_side(lengths.into_iter()).unwrap() < 25.0);
         let widths = [1.43, 0.88, 1.92, 3.28].map(|pixel| (14.0 + pixel, pixel));

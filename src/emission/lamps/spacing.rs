@@ -46,9 +46,9 @@ fn frame(component: usize, exemplar: &Exemplar, designs: &Designs) -> Frame {
 }
 
 /// Leaves out each instance that is too close to an earlier instance that is kept, and returns the other instances. The
-/// minimum gap is [`MIN_GAP_SHARE`] times the smallest gap between two whole lamps of the exemplar. Lamps that are whole
-/// periods apart are never too close: the photo may show only pairs that lie along the longer period. If whole lamps
-/// touch, or if there are fewer than two, returns all instances.
+/// minimum gap is [`MIN_GAP_SHARE`] times the smallest gap between two whole lamps of the exemplar. Lamps that are
+/// whole periods apart are never too close: the photo may show only pairs that lie along the longer period. If whole
+/// lamps touch, or if there are fewer than two, returns all instances.
 pub fn keep_apart(exemplar: &Exemplar, designs: &Designs, law: Law, instances: Vec<Instance>) -> Vec<Instance> {
     let frames: Vec<Frame> = (0..exemplar.roles.len()).map(|k| frame(k, exemplar, designs)).collect();
     let whole: Vec<Frame> = (0..frames.len()).filter(|&k| exemplar.roles[k].is_whole()).map(|k| frames[k]).collect();
