@@ -27,7 +27,7 @@ FORMATS = {"float": "<f", "double": "<d", "uint64_t": "<Q", "size_t": "<Q"}
 BOUNDS = {"count": 257, "capacity": 257, "size": script.ROOM + 1, "stride": 256, "num_threads": 4}
 #: Paths of the files that calls read and write, in the fuzzer's working folder.
 PATHS = ["", "no/such/place/a.png", *(f"{name}.{ending}" for name in "ab" for ending in ("png", "exr", "glb", "ldt", "ies", "xml", "gldf", "csv"))]
-PATHS += ["layers.exr", "part0.exr", "part1.exr", "lamps.csv", "a.gldf#0"]
+PATHS += ["layers.exr", "part0.exr", "part1.exr", "lamps.csv", "a.gldf#0", "day.epw"]
 #: Maximum number of bytes of an array in the encoded calls; the decoder repeats them to fill its memory.
 MAX_BYTES = 192
 

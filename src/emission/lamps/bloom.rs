@@ -2,6 +2,7 @@
 //! photo pixels.
 
 use crate::maths;
+use glam::{DMat2, DVec2};
 
 /// `SIDE_NOISE`: standard deviation of the error of a measured side. `BLOOM`: standard deviation of the prior of the
 /// bloom, the distance by which a lens moves each edge outwards; the prior has mean 0. Both in photo pixels.
@@ -34,90 +35,66 @@ const MIN_SIDE: f64 = 0.35;
 /// `None` if there is no lamp.
 pub fn common_side(sides: impl Iterator<Item = (f64, f64)>) -> Option<f64> {
     let fit = BloomFit::new(sides);
-    fit.side(fit.bloom())
-}
-
-/// Estimates two sides as [`common_side`] does. The long side gets at most the bloom of the short side: lamps that are
-/// partly hidden have different lengths, which a large bloom can seem to explain.
-pub fn common_sides(sides: [impl Iterator<Item = (f64, f64)>; 2]) -> Option<[f64; 2]> {
-    let fits = sides.map(BloomFit::new);
-    let mut blooms = [fits[0].bloom(), fits[1].bloom()];
-    let long = usize::from(fits[1].mean() > fits[0].mean());
-    blooms[long] = blooms[long].min(blooms[1 - long]);
-    Some([fits[0].side(blooms[0])?, fits[1].side(blooms[1])?])
+    let shown = if fit.count >= MIN_BLOOM_LAMPS { fit.shown() } else { None };
+    shown.or_else(|| {
+        let [side, bloom] = fit.solve(BLOOM).to_array();
+        fit.limited(if bloom > 0.0 && fit.count > 1 { side } else { fit.mean() })
+    })
 }
 
 /// A weighted least-squares fit of the line `side = s + 2 b p` to the measured sides of lamps. `p` is the length of a
 /// photo pixel at a lamp in unwarped pixels. The unknowns are the side `s` without bloom, in unwarped pixels, and the
 /// bloom `b` at each edge, in photo pixels.
 pub struct BloomFit {
-    /// Weighted sums over the lamps, where y is the measured side and x = 2 p.
-    weight: f64,
-    x: f64,
-    y: f64,
-    /// The same sums of products, relative to the means of x and y, once all lamps are added.
-    xx: f64,
-    xy: f64,
-    yy: f64,
+    /// The normal equations are `gram` (s, b) = `sums`.
+    gram: DMat2,
+    sums: DVec2,
+    /// Weighted sum of the squared measured sides.
+    square: f64,
     shortest: f64,
     count: usize,
 }
 
 impl BloomFit {
     pub fn new(sides: impl Iterator<Item = (f64, f64)>) -> Self {
-        let mut fit =
-            Self { weight: 0.0, x: 0.0, y: 0.0, xx: 0.0, xy: 0.0, yy: 0.0, shortest: f64::INFINITY, count: 0 };
+        let mut fit = Self { gram: DMat2::ZERO, sums: DVec2::ZERO, square: 0.0, shortest: f64::INFINITY, count: 0 };
         for (side, pixel) in sides {
-            let (weight, x) = (maths::powi(SIDE_NOISE * pixel, -2), 2.0 * pixel);
-            fit.weight += weight;
-            fit.x += weight * x;
-            fit.y += weight * side;
-            fit.xx += weight * x * x;
-            fit.xy += weight * x * side;
-            fit.yy += weight * side * side;
+            let weight = maths::powi(SIDE_NOISE * pixel, -2);
+            let row = DVec2::new(1.0, 2.0 * pixel);
+            fit.gram += DMat2::from_cols(row * row.x, row * row.y) * weight;
+            fit.sums += row * side * weight;
+            fit.square += side * side * weight;
             (fit.shortest, fit.count) = (fit.shortest.min(side), fit.count + 1);
         }
-        fit.xx -= fit.x * fit.x / fit.weight;
-        fit.xy -= fit.x * fit.y / fit.weight;
-        fit.yy -= fit.y * fit.y / fit.weight;
         fit
     }
 
-    /// The bloom in photo pixels, at least 0, as [`common_side`] describes it.
-    fn bloom(&self) -> f64 {
-        let shown = if self.count >= MIN_BLOOM_LAMPS { self.shown_bloom() } else { None };
-        shown.unwrap_or_else(|| if self.count > 1 { self.bloom_with_prior(BLOOM).max(0.0) } else { 0.0 })
-    }
-
-    /// The bloom in photo pixels. Its prior is normal, with mean 0 and the given standard deviation in photo pixels.
-    fn bloom_with_prior(&self, deviation: f64) -> f64 {
-        self.xy / (self.xx + maths::powi(deviation, -2))
-    }
-
-    /// The bloom that the lamps show. `None` if it is below 0 or above [`MAX_BLOOM`], or if it does not explain more
-    /// than the share [`MIN_EXPLAINED`] of the variation of the measured sides.
-    fn shown_bloom(&self) -> Option<f64> {
-        let bloom = self.bloom_with_prior(SHOWN_BLOOM);
-        // The weighted sum of squared residuals with bloom; `yy` is this sum without bloom.
-        let left = self.yy - 2.0 * bloom * self.xy + bloom * bloom * self.xx;
-        ((0.0..=MAX_BLOOM).contains(&bloom) && left < (1.0 - MIN_EXPLAINED) * self.yy).then_some(bloom)
-    }
-
-    /// The side without the bloom that the lamps show; `None` if they show none ([`Self::shown_bloom`]).
-    pub fn shown(&self) -> Option<f64> {
-        self.shown_bloom().and_then(|bloom| self.side(bloom))
+    /// Solves for (s, b), the side in unwarped pixels and the bloom in photo pixels. The prior of the bloom is normal,
+    /// with mean 0 and the given standard deviation in photo pixels.
+    fn solve(&self, deviation: f64) -> DVec2 {
+        (self.gram + DMat2::from_diagonal(DVec2::new(0.0, maths::powi(deviation, -2)))).inverse() * self.sums
     }
 
     /// The weighted mean of the measured sides.
     fn mean(&self) -> f64 {
-        self.y / self.weight
+        self.sums.x / self.gram.x_axis.x
     }
 
-    /// The side without the given bloom, but at least [`MIN_SIDE`] times the shortest measured side; `None` unless it
-    /// is positive and finite.
-    fn side(&self, bloom: f64) -> Option<f64> {
-        let side = (self.mean() - bloom * self.x / self.weight).max(MIN_SIDE * self.shortest);
-        Some(side).filter(|s| s.is_finite() && *s > 0.0)
+    /// The side without bloom. `None` if the bloom is below 0 or above [`MAX_BLOOM`], or if it does not explain more
+    /// than the share [`MIN_EXPLAINED`] of the variation of the measured sides.
+    pub fn shown(&self) -> Option<f64> {
+        let solution = self.solve(SHOWN_BLOOM);
+        // Weighted sums of squared residuals of two models: a side with bloom (`left`), and a constant side (`all`).
+        let left = self.square - 2.0 * solution.dot(self.sums) + solution.dot(self.gram * solution);
+        let all = self.square - self.mean() * self.sums.x;
+        let is_shown = (0.0..=MAX_BLOOM).contains(&solution.y) && left < (1.0 - MIN_EXPLAINED) * all;
+        is_shown.then_some(solution.x).and_then(|side| self.limited(side))
+    }
+
+    /// Returns the larger of `side` and [`MIN_SIDE`] times the shortest measured side; `None` unless this is positive
+    /// and finite.
+    fn limited(&self, side: f64) -> Option<f64> {
+        Some(side.max(MIN_SIDE * self.shortest)).filter(|s| s.is_finite() && *s > 0.0)
     }
 }
 
@@ -134,18 +111,5 @@ mod tests {
         assert!((side - 40.0).abs() < 1.0, "{side}");
         // A single lamp keeps its measured side.
         assert!((common_side([(41.6, 1.0)].into_iter()).unwrap() - 41.6).abs() < 1e-9);
-    }
-
-    #[test]
-    fn lengths_get_no_more_bloom_than_widths() {
-        // Lamps of 14 x 70 unwarped pixels with a bloom of half a photo pixel. The nearest one is hidden in part.
-        // Alone, the lengths would be those of lamps of 20 unwarped pixels with a bloom of 5 photo pixels.
-        let lengths = [(43.0, 2.45), (68.0, 4.19), (68.0, 4.71), (66.0, 5.33)];
-        assert!(common_side(lengths.into_iter()).unwrap() < 25.0);
-        let widths = [1.43, 0.88, 1.92, 3.28].map(|pixel| (14.0 + pixel, pixel));
-        let [width, length] = common_sides([widths.into_iter(), lengths.into_iter()]).unwrap();
-        assert!((width - 14.0).abs() < 0.5 && length > 45.0, "{width} x {length}");
-        let [length, width] = common_sides([lengths.into_iter(), widths.into_iter()]).unwrap();
-        assert!((width - 14.0).abs() < 0.5 && length > 45.0, "{width} x {length}");
     }
 }

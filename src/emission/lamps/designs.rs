@@ -14,7 +14,7 @@
 //!
 //! Not modelled: ring-shaped lamps; lamps of equal shape but different orientation.
 
-use super::bloom::common_sides;
+use super::bloom::common_side;
 use super::design::{Design, Shape};
 use super::discs;
 use super::luminaire::Luminaire;
@@ -123,9 +123,8 @@ pub fn fit(members: &[Member]) -> Option<Design> {
     let mean = |value: &dyn Fn(&Member) -> f64| judges.iter().map(|m| m.weight * value(m)).sum::<f64>() / total;
     let design = [Shape::Rectangle, Shape::Ellipse].map(|shape| {
         let sides = judges.iter().map(|m| (m.sides(axis, shape), m.blur_along(axis)));
-        let side = |k: usize| sides.clone().map(move |(size, blur)| (size[k], blur[k]));
-        let sides = common_sides([side(0), side(1)])?;
-        let design = Design { shape, size: DVec2::from(sides), axis };
+        let side = |k: usize| common_side(sides.clone().map(|(size, blur)| (size[k], blur[k])));
+        let design = Design { shape, size: DVec2::new(side(0)?, side(1)?), axis };
         let agreement = mean(&|m| {
             let own = Design { size: m.sides(axis, shape), ..design };
             own.agreement(&m.outline, m.area, m.centre)
