@@ -34,8 +34,8 @@ def sun_position(context: Context, time: datetime, latitude: float, longitude: f
     >>> from datetime import datetime, timedelta, timezone
     >>> noon = datetime(2026, 6, 21, 12, 30, tzinfo=timezone(timedelta(hours=2)))
     >>> sun = sun_position(context, noon, 48.14, 11.58)
-    >>> print(f"{np.degrees(sun.altitude):.2f} {np.degrees(sun.azimuth):.2f}")
-    63.70 155.91
+    >>> print(f"{np.degrees(sun.altitude):.1f} {np.degrees(sun.azimuth):.1f}")
+    63.7 155.9
     """
     if time.tzinfo is None:
         raise ValueError(f"the time {time} has no time zone; give it one, such as timezone.utc")
