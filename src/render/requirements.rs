@@ -112,10 +112,7 @@ impl Requirements {
             sentences.push(format!("{} triangles have no area: no ray meets them.", self.flat_triangles));
         }
         if let Some(first) = self.first_solid {
-            let meshes = match self.solids {
-                1 => format!("Mesh {first} is"),
-                count => format!("{count} meshes, the first of them mesh {first}, are"),
-            };
+            let meshes = named_meshes(self.solids, first);
             sentences.push(format!(
                 "{meshes} closed and transparent, of a material without thickness: light goes straight on through, and \
                  is not bent."
@@ -134,10 +131,7 @@ impl Requirements {
     /// Adds sentences about solid glass that is not closed, and about light that does not find its way through.
     fn name_limits_of_solids(&self, sentences: &mut Vec<String>) {
         if let Some(first) = self.first_open_solid {
-            let meshes = match self.open_solids {
-                1 => format!("Mesh {first} is"),
-                count => format!("{count} meshes, the first of them mesh {first}, are"),
-            };
+            let meshes = named_meshes(self.open_solids, first);
             sentences.push(format!("{meshes} solid glass but not closed: where light leaves, it is not clear."));
         }
         if let Some(mesh) = self.inverted_solid {
@@ -155,6 +149,14 @@ impl Requirements {
                 "{what}: only paths that happen to meet a lamp, the sky or the sun behind it bring light."
             ));
         }
+    }
+}
+
+/// Returns the subject and the verb of a sentence about `count` meshes, the first of which has the index `first`.
+fn named_meshes(count: usize, first: usize) -> String {
+    match count {
+        1 => format!("Mesh {first} is"),
+        count => format!("{count} meshes, the first of them mesh {first}, are"),
     }
 }
 
@@ -342,11 +344,13 @@ impl Requirements {
     /// Adds the kinds of punctual lights, and the environment.
     fn include_lights(&mut self, scene: &Scene) {
         for light in &scene.lights {
-            self.parallel |= matches!(light, PunctualLight::Directional { half_angle: 0.0, illuminance, .. } if illuminance.max_element() > 0.0);
             let (kind, strength) = match light {
                 PunctualLight::Point { intensity, .. } => (&mut self.points, intensity),
                 PunctualLight::Spot { intensity, .. } => (&mut self.spots, intensity),
-                PunctualLight::Directional { illuminance, .. } => (&mut self.directional, illuminance),
+                PunctualLight::Directional { illuminance, half_angle, .. } => {
+                    self.parallel |= *half_angle == 0.0 && illuminance.max_element() > 0.0;
+                    (&mut self.directional, illuminance)
+                }
                 PunctualLight::Luminaire { colour, .. } => {
                     let has_faces = light.opening(&scene.distributions).is_some();
                     (if has_faces { &mut self.surfaces } else { &mut self.points }, colour)
