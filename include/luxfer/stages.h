@@ -797,9 +797,11 @@ typedef struct luxfer_emission_params {
      */
     uint32_t tileable;
     /**
-     * 1: the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps, lies at
-     * the texture's centre, whichever lets the border cut the fewest lamps. The field offset shifts the pattern from
-     * there. Default 0. No effect with LUXFER_LAW_FREE.
+     * Whether the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps,
+     * then lies at the texture's centre, whichever lets the border cut the fewest lamps, and the field offset shifts
+     * the pattern from there. 0: not centred. 1: centred. 2, the default: centred if the texture is larger than what
+     * the photo shows of the plane; but not if it is tileable, or if the photo shows both ends of a row of lamps.
+     * No effect with LUXFER_LAW_FREE.
      */
     uint32_t centred;
     /**

@@ -21,8 +21,9 @@
 //!    exemplar's statistics. [`other_laws`] makes textures by other laws if the texture differs more from the
 //!    exemplar than a texture without light would.
 //!
-//! A texture that fits inside the exemplar is copied from it, unless it is to be tileable or centred. Another exception
-//! is an exemplar whose lamps have ragged outlines and lie on a lattice: such lamps are placed and drawn anew.
+//! A texture that fits inside the exemplar is copied from it, unless it is to be tileable or is centred in any case.
+//! Another exception is an exemplar whose lamps have ragged outlines and lie on a lattice: such lamps are placed and
+//! drawn anew.
 //!
 //! Beyond the paper:
 //!
@@ -66,7 +67,7 @@ pub use lamps::luminaire::Luminaire;
 pub use lattice::law::Law;
 pub use measure::{Measurements, measure};
 pub use output::Emission;
-pub use params::{Input, LawMode, Params, SCALES};
+pub use params::{Centring, Input, LawMode, Params, SCALES};
 pub use sizing::{Scale, Sizing, TexelGrid};
 
 use crate::error::{Error, Result};

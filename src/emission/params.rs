@@ -43,6 +43,19 @@ pub enum LawMode {
     Free,
 }
 
+/// Which textures centre their lattice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Centring {
+    /// None: lamps keep their positions relative to the upper left corner of the exemplar.
+    Never,
+    /// All, so none is a copied part of the exemplar.
+    Always,
+    /// Those that continue beyond the photo, because there nothing but the texture gives the lamps their positions. A
+    /// texture that fits inside the exemplar, a tileable texture, and a row whose two ends the photo shows, are not
+    /// centred.
+    BeyondPhoto,
+}
+
 /// The settings of a texture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Params {
@@ -86,9 +99,9 @@ pub struct Params {
     /// number of periods fits. Lights that run through the exemplar are copied patch by patch, not as whole lamps: they
     /// meet across the border of the texture only if the pattern has a lattice.
     pub tileable: bool,
-    /// Centres the lattice in the texture: a lamp, or the middle between two lamps, lies at the texture's centre, so
-    /// that the border cuts as few lamps as possible. `offset` then shifts the centred lattice.
-    pub centred: bool,
+    /// Which textures centre their lattice: a lamp, or the middle between two lamps, then lies at the texture's centre,
+    /// so that the border cuts as few lamps as possible. `offset` shifts the centred lattice.
+    pub centring: Centring,
     /// Channel value, in `[0, 1]`, at or above which a pixel of the unwarped photo counts as clipped; 0 if no pixel is
     /// to count as clipped. Clipped parts of a lamp get the colour of its rim. The level should lie below 1, the
     /// largest value of an 8-bit photo, because an unwarped pixel is a mean of clipped and unclipped photo pixels.
@@ -114,7 +127,7 @@ impl Default for Params {
             even_lamps: false,
             clean_lamps: true,
             tileable: false,
-            centred: false,
+            centring: Centring::BeyondPhoto,
             clip_level: 0.95,
             seed: 1,
         }

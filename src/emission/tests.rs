@@ -136,7 +136,7 @@ fn grids_go_on_in_phase() {
 
 #[test]
 fn hexagonal_skewed_and_mixed_lattices_go_on_in_phase() {
-    let params = Params { width: 700, height: 640, ..Params::default() };
+    let params = Params { width: 700, height: 640, centring: Centring::Never, ..Params::default() };
     let patterns: [(&str, DVec2, DVec2, f64); 3] = [
         ("hexagonal", DVec2::new(44.0, 0.0), DVec2::new(22.0, 38.0), 8.0),
         ("skewed", DVec2::new(40.0, 6.0), DVec2::new(-8.0, 46.0), 9.0),
@@ -406,7 +406,8 @@ fn pixels_that_are_not_numbers_are_left_out() {
         exemplar.light.data[at + 3200] = f32::INFINITY;
         exemplar.valid.data[at + 9] = f32::NAN;
     }
-    let result = exemplar.run(&Params { width: 400, height: 400, ..Params::default() }).unwrap();
+    let result =
+        exemplar.run(&Params { width: 400, height: 400, centring: Centring::Never, ..Params::default() }).unwrap();
     assert_eq!(result.texture.count_non_finite(), 0);
     check(
         "not numbers",
@@ -522,7 +523,8 @@ fn a_chandelier_is_repeated_as_it_hangs() {
         .chain([DVec2::new(141.0, 127.0), DVec2::new(158.0, 122.0), DVec2::new(152.0, 141.0)])
         .collect();
     let exemplar = Design::new(300, 280, |x, y| bulbs.iter().any(|b| b.distance(DVec2::new(x, y)) < 5.0));
-    let result = exemplar.run(&Params { width: 600, height: 560, ..Params::default() }).unwrap();
+    let result =
+        exemplar.run(&Params { width: 600, height: 560, centring: Centring::Never, ..Params::default() }).unwrap();
     assert!(matches!(result.law, Law::Whole(_)), "{:?}", result.law);
     assert_eq!(result.luminaires.len(), 4 * bulbs.len(), "{:?}", result.law);
     assert!(result.error < 1e-6, "{}", result.error);
@@ -539,8 +541,8 @@ fn textures_smaller_than_a_patch_show_what_fits() {
     let exemplar = Design::new(200, 200, grid(40.0, 40.0, 14.0, 14.0));
     for (width, height) in [(1, 1), (30, 9), (59, 41), (41, 59)] {
         for (block, scale) in [(0, 1.0), (150, 1.0), (150, 0.25)] {
-            // With `centred`, the texture is not a copied part of the exemplar.
-            let params = Params { width, height, block, scale, centred: true, ..Params::default() };
+            // With `Centring::Always`, the texture is not a copied part of the exemplar.
+            let params = Params { width, height, block, scale, centring: Centring::Always, ..Params::default() };
             let result = exemplar.run(&params).unwrap();
             assert!(matches!(result.law, Law::Lattice(_)));
             let lamps = inner(&result.luminaires, width, height);

@@ -15,7 +15,7 @@ use super::pointer::Out;
 use super::scene::missing;
 use super::stage::{Stage, need};
 use super::status::luxfer_status;
-use crate::emission::{self, Choice, Emission, LampList, Law, Luminaire, Style};
+use crate::emission::{self, Centring, Choice, Emission, LampList, Law, Luminaire, Style};
 use crate::error::{Error, ErrorKind, Result};
 use crate::geometry::Homography;
 use crate::image::Image;
@@ -91,9 +91,11 @@ pub struct luxfer_emission_params {
     /// pattern change by less than half a period. Needs whole_lamps = 1, or else the job ends with
     /// LUXFER_INVALID_ARGUMENT. Default 0.
     pub tileable: u32,
-    /// 1: the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps, lies at
-    /// the texture's centre, whichever lets the border cut the fewest lamps. The field offset shifts the pattern from
-    /// there. Default 0. No effect with LUXFER_LAW_FREE.
+    /// Whether the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps,
+    /// then lies at the texture's centre, whichever lets the border cut the fewest lamps, and the field offset shifts
+    /// the pattern from there. 0: not centred. 1: centred. 2, the default: centred if the texture is larger than what
+    /// the photo shows of the plane; but not if it is tileable, or if the photo shows both ends of a row of lamps.
+    /// No effect with LUXFER_LAW_FREE.
     pub centred: u32,
     /// For LUXFER_LAW_FREE: number of patches, drawn at random from the exemplar, that are compared for each patch of
     /// the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the neighbours already placed in
@@ -133,7 +135,7 @@ versioned!(luxfer_emission_params, [104], {
         clip_level: d.clip_level,
         even_lamps: u32::from(d.even_lamps),
         tileable: u32::from(d.tileable),
-        centred: u32::from(d.centred),
+        centred: CENTRINGS.iter().position(|c| *c == d.centring).unwrap_or(0) as u32,
         candidates: d.candidates as u32,
         reserved: 0,
         law: LUXFER_LAW_BEST,
@@ -141,6 +143,14 @@ versioned!(luxfer_emission_params, [104], {
         max_magnification: d.max_magnification,
     }
 });
+
+/// The meanings of `luxfer_emission_params::centred`, from 0 on.
+const CENTRINGS: [Centring; 3] = [Centring::Never, Centring::Always, Centring::BeyondPhoto];
+
+fn centring(centred: u32) -> Result<Centring> {
+    let known = CENTRINGS.get(centred as usize);
+    known.copied().ok_or_else(|| Error::argument(format!("emission.centred is {centred}; it must be 0, 1 or 2")))
+}
 
 impl luxfer_emission_params {
     pub(super) fn params(&self) -> Result<emission::Params> {
@@ -159,7 +169,7 @@ impl luxfer_emission_params {
             whole_lamps: params::flag(self.whole_lamps, "whole_lamps")?,
             even_lamps: params::flag(self.even_lamps, "even_lamps")?,
             tileable: params::flag(self.tileable, "tileable")?,
-            centred: params::flag(self.centred, "centred")?,
+            centring: centring(self.centred)?,
             clip_level: self.clip_level,
             candidates: self.candidates as usize,
             law: emission_law::law(self.law)?,

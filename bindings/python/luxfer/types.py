@@ -1884,9 +1884,11 @@ class EmissionParams(TypedDict, total=False):
     height of the pattern change by less than half a period. Needs whole_lamps = 1, or else the job ends with
     Status.INVALID_ARGUMENT. Default 0."""
     centred: int
-    """1: the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring lamps,
-    lies at the texture's centre, whichever lets the border cut the fewest lamps. The field offset shifts the
-    pattern from there. Default 0. No effect with EmissionLaw.FREE."""
+    """Whether the pattern is centred on the texture. A lamp, or the middle between two or four neighbouring
+    lamps, then lies at the texture's centre, whichever lets the border cut the fewest lamps, and the field
+    offset shifts the pattern from there. 0: not centred. 1: centred. 2, the default: centred if the texture is
+    larger than what the photo shows of the plane; but not if it is tileable, or if the photo shows both ends of
+    a row of lamps. No effect with EmissionLaw.FREE."""
     candidates: int
     """For EmissionLaw.FREE: number of patches, drawn at random from the exemplar, that are compared for each
     patch of the texture; in [1, 65536]; default 192. Patches of the exemplar that continue the neighbours

@@ -14,7 +14,7 @@
 //! comes first in the list stays. Lights that run through their exemplar are not chosen at random: the weight dims them
 //! instead.
 //!
-//! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Params::centred`], a lamp
+//! Lattices of different exemplars keep their own period and phase. With [`crate::emission::Centring::Always`], a lamp
 //! of each lattice, or the middle between two lamps, lies at the texture's centre.
 
 use super::layer::Layer;

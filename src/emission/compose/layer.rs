@@ -17,7 +17,7 @@ use crate::emission::lamps::rim_colour::RimColours;
 use crate::emission::lamps::{cut, lattice_fill, luminaires, sharpest, spacing, stretched};
 use crate::emission::lattice::law::Law;
 use crate::emission::lattice::{basis, border_sites, centring, extent};
-use crate::emission::params::{Input, Params, working_side};
+use crate::emission::params::{Centring, Input, Params, working_side};
 use crate::emission::quilt;
 use crate::emission::quilt::guide::Guide;
 use crate::emission::quilt::metadata;
@@ -271,8 +271,8 @@ fn source(
             (Exemplar::new(input, side, params.max_magnification, job.part(0.0, 0.15))?, None)
         }
     };
-    let stays = params.tileable || params.centred;
-    let mut window = if stays { None } else { Window::find(&exemplar, params)? };
+    let is_copy = !params.tileable && params.centring != Centring::Always;
+    let mut window = if is_copy { Window::find(&exemplar, params)? } else { None };
     let is_inside = window.as_ref().is_some_and(|w| w.is_shown);
     // If a photo pixel spans several unwarped pixels, outlines are ragged. Lamps with ragged outlines are drawn anew.
     let may_be_redrawn = params.clean_lamps && params.whole_lamps && input.photo.is_some();
@@ -329,6 +329,14 @@ fn is_ragged(exemplar: &Exemplar, corner: DVec2, size: DVec2) -> bool {
     weighted_median(pixels.collect()).is_some_and(|pixel| pixel >= MIN_RAGGED_PIXEL)
 }
 
+/// Whether the law is a row that ends on both sides within the exemplar, so that the texture repeats it as a whole.
+fn ends(exemplar: &Exemplar, law: Law) -> bool {
+    match law {
+        Law::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
+        _ => false,
+    }
+}
+
 impl<'a> PatternPlacement<'a> {
     fn new(exemplar: &Exemplar, found: Law, window: Option<Window>, params: &'a Params) -> Result<Self> {
         let working = &exemplar.working;
@@ -340,8 +348,14 @@ impl<'a> PatternPlacement<'a> {
         let cap = half_period.min(block as f64).max(1.0);
         let canvas = (params.size() / working.pitch).ceil();
         let canvas = (canvas.x as usize, canvas.y as usize);
-        let centred = if params.centred { centring::shift(exemplar, law, params.size()) } else { None };
-        let offset = params.offset * params.scale + centred.unwrap_or(DVec2::ZERO);
+        let is_centred = match params.centring {
+            Centring::Never => false,
+            Centring::Always => true,
+            Centring::BeyondPhoto => window.is_none() && !params.tileable && !ends(exemplar, law),
+        };
+        // Whole pixels keep what is copied as sharp as it is.
+        let centring = if is_centred { centring::shift(exemplar, law, params.size()) } else { None };
+        let offset = params.offset * params.scale + centring.map_or(DVec2::ZERO, |shift| shift.round());
         let offset = window.map_or(offset, |w| -w.corner);
         Ok(Self { params, found, law, offset, canvas, block, cap })
     }
@@ -393,12 +407,8 @@ impl<'a> PatternPlacement<'a> {
     /// row that ends within the exemplar; or no lamp has a design. Panes of a luminous ceiling need no design if
     /// `params.clean_lamps` is set and the exemplar has a photo.
     fn sites(&self, exemplar: &Exemplar, designs: &Designs) -> Option<Sites> {
-        let ends = match self.law {
-            Law::Row([along, _]) => extent::repeat_of_row(exemplar, along).is_some(),
-            _ => false,
-        };
         let are_panes = self.params.clean_lamps && exemplar.to_photo.is_some() && exemplar.is_luminous_ceiling();
-        if ends || (designs.kinds.is_empty() && !are_panes) {
+        if ends(exemplar, self.law) || (designs.kinds.is_empty() && !are_panes) {
             return None;
         }
         Sites::new(exemplar, &exemplar.measured_lamps(Role::is_whole), self.law)

@@ -2,6 +2,7 @@
 //! the lamps.
 
 pub mod bands;
+mod border_cuts;
 pub mod composition;
 mod cubic;
 pub mod draw;

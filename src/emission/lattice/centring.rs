@@ -4,6 +4,7 @@ use super::law::Law;
 use crate::emission::exemplar::Exemplar;
 use crate::emission::exemplar::components::Component;
 use glam::{DMat2, DVec2};
+use std::cmp::Ordering;
 
 /// In a texture with more lattice cells than this, it would take too long to count the lamps that the border cuts. The
 /// lamp nearest to the exemplar's centre then moves to the texture's centre, without comparison. [convention]
@@ -34,7 +35,8 @@ impl Bounds {
 /// The shift, in unwarped pixels, that centres a lattice in a texture of `size` unwarped pixels. Four shifts are
 /// compared. They move one of these points to the texture's centre: a lamp, the midpoint between two lamps that are one
 /// period apart (for each period), or the midpoint between four lamps around a cell. The shift is chosen for which the
-/// border cuts the fewest lamps; among equal shifts, the shift that keeps the other lamps farthest from the border.
+/// border cuts the fewest lamps; among equal shifts, the shift with the number of lamps nearest to the size of the
+/// texture divided by the size of a lattice cell; then the shift that keeps the lamps farthest from the border.
 /// With more than [`MAX_CELLS`] cells, a lamp moves to the centre without comparison. `None` if the law has no lattice.
 pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     let [a, b] = law.lattice()?;
@@ -46,11 +48,13 @@ pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     if size.element_product() * inverse.determinant().abs() > MAX_CELLS {
         return Some(shifts[0]);
     }
-    let scores = shifts.map(|shift| border(&motif, [a, b], shift, size));
-    let best = (1..4).fold(0, |best, i| {
-        let ((cut, margin), (min_cut, max_margin)) = (scores[i], scores[best]);
-        if cut < min_cut || (cut == min_cut && margin > max_margin + 1e-6) { i } else { best }
+    let expected = motif.len() as f64 * size.element_product() * inverse.determinant().abs();
+    let scores = shifts.map(|shift| {
+        let Border { cut, whole, margin } = Border::of(&motif, [a, b], shift, size);
+        // Rounded to a millionth of a lamp or pixel: smaller differences are rounding errors.
+        [cut as f64, (whole as f64 - expected).abs(), -margin].map(|score| (score * 1e6).round())
     });
+    let best = (0..4).min_by(|&i, &j| scores[i].partial_cmp(&scores[j]).unwrap_or(Ordering::Equal))?;
     Some(shifts[best])
 }
 
@@ -84,30 +88,46 @@ fn motif(exemplar: &Exemplar, law: Law) -> Vec<Bounds> {
     }
 }
 
-/// The number of lamps that the texture's border cuts after `shift`, and the minimum distance of the other lamps from
-/// the border, in unwarped pixels. `a` and `b` are the periods of the lattice.
-fn border(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> (usize, f64) {
-    let inverse = DMat2::from_cols(a, b).inverse();
-    let (mut cut, mut margin) = (0, f64::INFINITY);
-    for lamp in motif {
-        let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
-        // Find the range of lattice coordinates (i, j) for which the lamp, moved by i a + j b, may touch the texture.
-        let half = (lamp.high - lamp.low) / 2.0;
-        let corners = [-half, DVec2::new(size.x + half.x, -half.y), DVec2::new(-half.x, size.y + half.y), size + half];
-        let cells = corners.map(|c| inverse * (c - lamp.centre()));
-        let first = cells.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).ceil();
-        let last = cells.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).floor();
-        let along = |first: f64, last: f64| (0..=(last - first).max(-1.0) as i64).map(move |i| first + i as f64);
-        for j in along(first.y, last.y) {
-            for i in along(first.x, last.x) {
-                let (low, high) = (lamp.low + a * i + b * j, lamp.high + a * i + b * j);
-                if !(high.cmpgt(DVec2::ZERO).all() && low.cmplt(size).all()) {
-                    continue;
+/// The lamps at the texture's border after a shift.
+struct Border {
+    /// The numbers of lamps that the border cuts, and that lie in the texture as a whole.
+    cut: usize,
+    whole: usize,
+    /// The minimum distance of the whole lamps from the border, in unwarped pixels; infinite without a whole lamp.
+    margin: f64,
+}
+
+impl Border {
+    /// The lamps of `motif` are repeated with the periods `a` and `b`, and shifted by `shift`.
+    fn of(motif: &[Bounds], [a, b]: [DVec2; 2], shift: DVec2, size: DVec2) -> Self {
+        let inverse = DMat2::from_cols(a, b).inverse();
+        let mut border = Self { cut: 0, whole: 0, margin: f64::INFINITY };
+        for lamp in motif {
+            let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
+            // Find the range of lattice coordinates (i, j) for which the lamp, moved by i a + j b, may touch the texture.
+            let half = (lamp.high - lamp.low) / 2.0;
+            let corners =
+                [-half, DVec2::new(size.x + half.x, -half.y), DVec2::new(-half.x, size.y + half.y), size + half];
+            let cells = corners.map(|c| inverse * (c - lamp.centre()));
+            let first = cells.iter().fold(DVec2::INFINITY, |m, c| m.min(*c)).ceil();
+            let last = cells.iter().fold(DVec2::NEG_INFINITY, |m, c| m.max(*c)).floor();
+            let along = |first: f64, last: f64| (0..=(last - first).max(-1.0) as i64).map(move |i| first + i as f64);
+            for j in along(first.y, last.y) {
+                for i in along(first.x, last.x) {
+                    let (low, high) = (lamp.low + a * i + b * j, lamp.high + a * i + b * j);
+                    if !(high.cmpgt(DVec2::ZERO).all() && low.cmplt(size).all()) {
+                        continue;
+                    }
+                    let inside = low.min(size - high).min_element();
+                    if inside < -1e-6 {
+                        border.cut += 1;
+                    } else {
+                        border.whole += 1;
+                        border.margin = border.margin.min(inside);
+                    }
                 }
-                let inside = low.min(size - high).min_element();
-                if inside < -1e-6 { cut += 1 } else { margin = margin.min(inside) }
             }
         }
+        border
     }
-    (cut, margin)
 }

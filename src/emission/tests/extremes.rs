@@ -20,7 +20,8 @@ fn one_lamp_that_touches_every_border_goes_on_as_it_meets_itself() {
     let frame = Design::new(64, 64, |x, y| from_middle(x, y).max_element() > 26.0);
     let cross = Design::new(64, 64, |x, y| from_middle(x, y).min_element() < 5.0);
     for (name, exemplar) in [("diamond", diamond), ("frame", frame), ("cross", cross)] {
-        let result = exemplar.run(&Params { width: 200, height: 180, ..Params::default() }).unwrap();
+        let result =
+            exemplar.run(&Params { width: 200, height: 180, centring: Centring::Never, ..Params::default() }).unwrap();
         assert!(repeats(&exemplar, &result), "{name}: {:?}", result.law);
     }
 }
@@ -30,14 +31,15 @@ fn an_exemplar_of_one_row_or_column_of_pixels_goes_on_at_its_period() {
     let lit = |along: f64| (along as usize).is_multiple_of(5);
     for (width, height) in [(60, 1), (1, 60)] {
         let exemplar = Design::new(width, height, |x, y| lit(if height == 1 { x } else { y }));
-        let result = exemplar.run(&Params { width: 90, height: 70, ..Params::default() }).unwrap();
+        let result =
+            exemplar.run(&Params { width: 90, height: 70, centring: Centring::Never, ..Params::default() }).unwrap();
         for (i, &mask) in result.mask.data.iter().enumerate() {
             let along = if height == 1 { i % 90 } else { i / 90 };
             assert_eq!(mask > 0.5, lit(along as f64), "{width} x {height}: {} {}", i % 90, i / 90);
         }
     }
     let point = Design::new(1, 1, |_, _| true);
-    let result = point.run(&Params { width: 9, height: 7, ..Params::default() }).unwrap();
+    let result = point.run(&Params { width: 9, height: 7, centring: Centring::Never, ..Params::default() }).unwrap();
     assert!(result.mask.data.iter().all(|&m| m == 1.0));
 }
 
@@ -45,8 +47,8 @@ fn an_exemplar_of_one_row_or_column_of_pixels_goes_on_at_its_period() {
 fn textures_of_one_row_or_column_of_texels_show_a_line_of_the_pattern() {
     let exemplar = Design::new(100, 80, grid(25.0, 20.0, 9.0, 7.0));
     for (width, height, share) in [(400, 1, 9.0 / 25.0), (1, 400, 7.0 / 20.0)] {
-        for centred in [false, true] {
-            let result = exemplar.run(&Params { width, height, centred, ..Params::default() }).unwrap();
+        for centring in [Centring::Never, Centring::Always] {
+            let result = exemplar.run(&Params { width, height, centring, ..Params::default() }).unwrap();
             let lit = result.mask.data.iter().map(|&m| f64::from(m)).sum::<f64>() / 400.0;
             // The texture is a single line of texels. If it runs between lamps, none of its texels is lit. If it runs
             // through lamps, the lit share is `share`, the side of a lamp divided by the period.
@@ -58,7 +60,8 @@ fn textures_of_one_row_or_column_of_texels_show_a_line_of_the_pattern() {
 #[test]
 fn a_period_longer_than_the_exemplar_is_its_extent() {
     let exemplar = Design::new(100, 80, grid(140.0, 110.0, 30.0, 20.0));
-    let result = exemplar.run(&Params { width: 400, height: 300, ..Params::default() }).unwrap();
+    let result =
+        exemplar.run(&Params { width: 400, height: 300, centring: Centring::Never, ..Params::default() }).unwrap();
     assert!(matches!(result.law, Law::Whole(_)), "{:?}", result.law);
     assert_eq!(result.luminaires.len(), 16);
     assert!(result.luminaires.iter().all(|l| (l.area / 600.0 - 1.0).abs() < 0.01));

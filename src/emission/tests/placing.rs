@@ -53,7 +53,8 @@ fn repetitions_of_the_exemplar_keep_its_rows_apart() {
         let disc = [33.0, 98.0, 124.0, 202.0].iter().any(|u| (x - u).hypot(y - 52.0) < 7.0);
         batten || disc || ((y - 108.0).abs() < 5.0 && is_within([22.0, 74.0, 95.0, 212.0], x, 5.0))
     });
-    let params = Params { width: 720, height: 500, law: LawMode::Whole, ..Params::default() };
+    let params =
+        Params { width: 720, height: 500, law: LawMode::Whole, centring: Centring::Never, ..Params::default() };
     let result = exemplar.run(&params).unwrap();
     let Law::Whole([_, down]) = result.law else { panic!("{:?}", result.law) };
     // Along y, the rows occupy 5 to 11, 45 to 59 and 103 to 113. The smaller of the two gaps is the one from 11 to 45.
@@ -102,7 +103,7 @@ fn centred_lattices_leave_the_same_room_on_all_sides() {
     for (exemplar, width, height) in
         [(&plain, 400, 396), (&plain, 430, 370), (&plain, 260, 200), (&hexagonal, 615, 520), (&alone, 240, 180)]
     {
-        let params = Params { width, height, centred: true, ..Params::default() };
+        let params = Params { width, height, centring: Centring::Always, ..Params::default() };
         let result = exemplar.run(&params).unwrap();
         // The texture must be symmetric under a rotation by 180° about its centre, and no lamp may be cut.
         let size = DVec2::new(width as f64, height as f64);
@@ -117,6 +118,31 @@ fn centred_lattices_leave_the_same_room_on_all_sides() {
         let nearest = moved.luminaires.iter().map(|l| l.centre.distance(expected)).fold(f64::MAX, f64::min);
         assert!(nearest < 1.0, "{width} x {height}: {nearest}");
     }
+}
+
+#[test]
+fn the_border_of_a_copied_part_cuts_no_lamp_if_it_can() {
+    let exemplar = Design::new(300, 280, grid(40.0, 36.0, 14.0, 10.0));
+    for (width, height) in [(100, 90), (124, 100)] {
+        let result = exemplar.run(&Params { width, height, ..Params::default() }).unwrap();
+        assert_eq!(result.law, Law::Copy);
+        assert_eq!(inner(&result.luminaires, width, height).len(), result.luminaires.len(), "{width} x {height}");
+        assert!(!result.luminaires.is_empty());
+    }
+}
+
+#[test]
+fn a_pattern_that_continues_beyond_the_photo_is_centred_unless_the_caller_keeps_its_place() {
+    let exemplar = Design::new(200, 180, grid(40.0, 36.0, 14.0, 10.0));
+    let params = Params { width: 420, height: 396, ..Params::default() };
+    let cut = |params: &Params| {
+        let lamps = exemplar.run(params).unwrap().luminaires;
+        lamps.len() - inner(&lamps, params.width, params.height).len()
+    };
+    assert_eq!(cut(&params), 0);
+    assert_eq!(cut(&Params { centring: Centring::Always, ..params.clone() }), 0);
+    let kept = Params { centring: Centring::Never, ..params };
+    assert!(cut(&kept) > 0);
 }
 
 #[test]
