@@ -13,6 +13,8 @@ for the copy itself:
 - `colour`: the same difference between greys under the lamps' mean colours.
 - `scale`, `turn`, `offset`, `exposure`: of the pattern as a factor, in degrees and in shares of its two vectors, and
   of all lamps in stops.
+
+The look counts as kept if the pattern and the colours of the surfaces hardly change; the search prefers such designs.
 """
 
 from __future__ import annotations
@@ -35,6 +37,12 @@ if TYPE_CHECKING:
 #: the pattern, turning it and a colour difference of 17 count about as much as a change of a brightness ratio by 0.17;
 #: a shift counts little, but enough that lamps do not move for nothing]
 SCALE_WEIGHT, TURN_WEIGHT, SHIFT_WEIGHT, COLOUR_WEIGHT = 0.25, 0.17, 0.1, 0.01
+#: Largest change of the pattern, and largest colour difference of the surfaces, with which the look counts as kept.
+#: [convention]
+KEPT_PATTERN, KEPT_DELTA_E = 0.10, 3.0
+#: Added to the total of a look that is not kept; more than the totals of all designs that anyone would like.
+#: [convention]
+LOST = 10.0
 #: Luminance of a grey with the lightness L* = 50 beside white. [convention: CIE 1976 L*a*b*]
 GREY = 0.1842
 #: Linear Rec.709 to XYZ, and its white. [convention: BT.709]
@@ -71,6 +79,16 @@ class Likeness:
         shares = (self.pattern, self.brightness, self.surfaces, self.moved)
         change = 2**self.exposure - 1 if math.isfinite(self.exposure) else -1.0
         return math.sqrt(sum(s * s for s in shares) + EXPOSURE_WEIGHT * change * change)
+
+    @property
+    def kept(self) -> bool:
+        """Whether the look counts as kept."""
+        return self.pattern <= KEPT_PATTERN and self.delta_e <= KEPT_DELTA_E
+
+    @property
+    def cost(self) -> float:
+        """The total by which designs are ordered: those that keep the look come before all others."""
+        return self.total + (0.0 if self.kept else LOST)
 
     @property
     def moved(self) -> float:
