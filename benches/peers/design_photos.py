@@ -51,7 +51,7 @@ RAYS, OTHER_RAYS, LEAST_RAYS, MOST_RAYS, RETRY = 8192, 4096, 2, 512, 8
 #: Size of the parts of a luminaire over their distance.
 PARTS = ("-ds", "0.1")
 #: Largest change of the pattern's statistics, and colour difference of the surfaces, with which a look is kept.
-PATTERN, DELTA_E = likeness.KEPT_PATTERN, likeness.KEPT_DELTA_E
+PATTERN, DELTA_E = likeness.SMALL_PATTERN, likeness.SMALL_DELTA_E
 
 
 def product(optics: str, length: float, width: float) -> design.Product:

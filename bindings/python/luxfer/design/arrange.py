@@ -4,14 +4,14 @@ all requirements.
 1. Find the pattern of the photo's lamps (motif.py), and make candidates: each product, with the pattern scaled, turned
    and shifted. Lamps that do not fit on the ceiling, or lie in a keep-out rectangle, are left out.
 2. Measure coefficients once (coefficients.py). With them, find the dimmers of each candidate that meet the
-   requirements. Candidates are tried in the order of the distance that they have with the best dimmers without
-   requirements, those that keep the look (likeness.py) before all others; the search ends when no remaining candidate
-   can be closer. Candidates that are too dark at full power
-   are left out first, then those that cannot meet the requirements for the same reason as an earlier one.
+   requirements. Candidates are tried in the order of the cost (likeness.py) that they have with the best dimmers
+   without requirements; the search ends when no remaining candidate can be closer. Candidates that are too dark at
+   full power are left out first, then those that cannot meet the requirements for the same reason as an earlier one.
 3. Improve scale and offset of the closest candidates by small steps; luminaires that are made to measure for one scale
    keep it.
-4. Solve for the dimmers of the closest candidate anew with its own paths, and check it with others (solve.py). If it
-   does not pass, the next one is tried.
+4. Solve for the dimmers of the closest candidates anew with their own paths, and check them with others (solve.py).
+   The closest one that passes is the design; the others are solved for only if they may still be closer. The checks
+   have few paths first, which wide margins make up for, and all paths only if no candidate passes.
 
 Only the paths are random, and their seeds are fixed: equal input gives an equal design.
 """
@@ -43,14 +43,15 @@ from .standard import OF_AREAS
 if TYPE_CHECKING:
     from ..scene import Scene
     from .areas import Area
+    from .check import Settings
     from .coefficients import Coefficients, Kind
     from .luminaires import Luminaire, Product
     from .project import Project
     from .standard import Requirement
 
-#: Margins of the first choice in addition to the margins of the solution, as a share of the limit and in units of UGR,
-#: because interpolated coefficients are uncertain. [convention]
-MARGIN, GLARE_MARGIN = 0.01, 0.4
+#: Margins of the first choice in addition to the margins of the solution, as a share of the limit of means, of single
+#: points, and in units of UGR, because interpolated coefficients are uncertain. [convention]
+MARGIN, POINT_MARGIN, GLARE_MARGIN = 0.01, 0.03, 0.4
 #: First step of the scale as a factor, and of the offset in shares of the lattice; each round halves them.
 #: [convention]
 SCALE_STEP, OFFSET_STEP, ROUNDS = 1.1, 0.125, 3
@@ -68,6 +69,8 @@ SLACK = 1e-3
 #: Points of each area that measure the responses of the final dimmers, paths for each point that measure the surfaces.
 #: [convention]
 FINAL_POINTS, SURFACE_PATHS = 32, 256
+#: Paths for each point at which the first check of a candidate ends. [convention]
+FEW_PATHS = 1024
 
 
 @dataclass(frozen=True)
@@ -240,22 +243,36 @@ def _best(task: _Task, candidates: Sequence[Candidate]) -> Arrangement:
     met.sort(key=lambda one: one.cost)
     if not met:
         return _failed(task, missed, count)
-    better = [_refined(task, one) for one in met[: task.search.finalists]]
-    final = None
-    for one in sorted(better, key=lambda one: one.cost):
-        solution = _solved(task, one.candidate)
-        found = _result(task, one.candidate, solution, count, len(met))
-        final = found if final is None or (found.feasible and not final.feasible) else final
-        if found.feasible:
-            return replace(found, prices=tuple(_prices(task, one)))
-    assert final is not None
-    return replace(final, relaxations=final.solution.relaxations)
+    better = sorted((_refined(task, one) for one in met[: task.search.finalists]), key=lambda one: one.cost)
+    settings = task.project.chosen
+    few = replace(settings, max_samples=max(settings.samples, min(settings.max_samples, FEW_PATHS)))
+    found, best = _checked(task, better, few, count, len(met))
+    if not found.solution.checked.passes:
+        found, best = _checked(task, better, settings, count, len(met))
+    if found.feasible:
+        return replace(found, prices=tuple(_prices(task, best)))
+    return replace(found, relaxations=found.solution.relaxations)
+
+
+def _checked(
+    task: _Task, closest: Sequence[_Rated], settings: Settings, tried: int, met: int
+) -> tuple[Arrangement, _Rated]:
+    """The closest of the candidates that passes, or the first one if none does."""
+    best: tuple[Arrangement, _Rated] | None = None
+    for one in closest:
+        if best and best[0].feasible and best[0].look.cost <= one.cost:
+            break
+        found = _result(task, one.candidate, _solved(task, one.candidate, settings), tried, met)
+        if best is None or (found.feasible and not (best[0].feasible and best[0].look.cost <= found.look.cost)):
+            best = found, one
+    assert best is not None
+    return best
 
 
 def _bounds(task: _Task, candidate: Candidate) -> tuple[float, float]:
-    """The cost of a candidate with the dimmers that would be best without requirements, and the share by
-    which it misses a mean illuminance with all lamps at their highest dimmers, 0 if it reaches all means. The latter
-    excludes most patterns of too few lamps without solving for their dimmers."""
+    """The cost of a candidate with the dimmers that would be best without requirements, and the share by which it
+    misses a mean illuminance with all lamps at their highest dimmers, 0 if it reaches all means. The latter excludes
+    most patterns of too few lamps without solving for their dimmers."""
     means = task.table.means(candidate.offer, candidate.lamps)
     dark = 0.0
     for r, margin in task.margins.items():
@@ -271,7 +288,7 @@ def _bounds(task: _Task, candidate: Candidate) -> tuple[float, float]:
 
 def _margins(requirements: Sequence[Requirement], reserve: float) -> dict[Requirement, float]:
     """Margins for coefficients that are interpolated."""
-    more = {"glare": GLARE_MARGIN, "density": 0.0, "flux": 0.0}
+    more = {"uniformity": POINT_MARGIN, "minimum": POINT_MARGIN, "glare": GLARE_MARGIN, "density": 0.0, "flux": 0.0}
     return {r: m + more.get(r.quantity, MARGIN) for r, m in first_margins(requirements, reserve).items()}
 
 
@@ -344,7 +361,7 @@ def _refined(task: _Task, start: _Rated) -> _Rated:
     return best
 
 
-def _solved(task: _Task, candidate: Candidate) -> Solution:
+def _solved(task: _Task, candidate: Candidate, settings: Settings) -> Solution:
     """The dimmers of a candidate by its own paths, checked."""
     photo, rows, _, _ = _aim(task, candidate)
     project, coarse = task.project, task.table.model(candidate.offer, candidate.lamps)
@@ -356,7 +373,7 @@ def _solved(task: _Task, candidate: Candidate) -> Solution:
         project.areas,
         (),
         project.room.floor_area,
-        project.chosen,
+        settings,
         task.wishes,
     )
     return solve(
@@ -366,7 +383,7 @@ def _solved(task: _Task, candidate: Candidate) -> Solution:
         project.areas,
         project.observers,
         floor_area=project.room.floor_area,
-        settings=project.chosen,
+        settings=settings,
         wishes=task.wishes,
         # Measuring the glare of each luminaire would take a scene for each; the check has its own glare anyway.
         model=replace(model, glare=coarse.glare),
@@ -401,7 +418,7 @@ def _failed(task: _Task, missed: Sequence[_Rated], tried: int) -> Arrangement:
             r, known = one.requirement, best.get(one.requirement)
             nearer = known is None or (one.attainable - known.attainable) * (1 if r.is_minimum else -1) > 0
             best[r] = one if nearer else known
-    found = _result(task, closest[0], _solved(task, closest[0]), tried, 0)
+    found = _result(task, closest[0], _solved(task, closest[0], task.project.chosen), tried, 0)
     return replace(found, relaxations=tuple(best[r] for r in task.margins if r in best))
 
 

@@ -70,7 +70,7 @@ class Patterns:
         """All patterns of the search, in the order of the closeness to the look that they can reach. `scales` holds the
         only scale of each kind; None: any."""
         search, out = self._search, []
-        offsets = list(itertools.product(search.offsets, repeat=2))
+        offsets = [(u, v) for u in search.offsets for v in search.offsets]
         for number, only in enumerate(scales):
             for scale, turn, offset in itertools.product(search.scales, search.turns, offsets):
                 one = self.made(number, scale, turn, offset) if only in (None, scale) else None
@@ -89,8 +89,7 @@ class Patterns:
             return None
         lamps, change = known
         bound = math.hypot(change, likeness.moved(scale, turn, offset, self._colours[number]))
-        bound += likeness.LOST if change > likeness.KEPT_PATTERN else 0.0
-        return Candidate(number, scale, turn, offset, lamps, change, bound)
+        return Candidate(number, scale, turn, offset, lamps, change, bound + likeness.excess(change))
 
     def _laid_out(
         self, sides: NDArray[np.float64], scale: float, turn: float, offset: tuple[float, float]
