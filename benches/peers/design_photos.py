@@ -6,7 +6,7 @@
 The photos are the first ten by name that `make bench ONLY=photos:real` judges right and that show a pattern on a plane
 (without TRAPS and WITHOUT_PLANE of benches/photos/corpus.rs). For each photo and room: the light is copied to the
 ceiling, then luxfer.design.arrange finds the design closest to this copy that meets all requirements. Its luminaires
-are made to measure: openings of the photo's lamps, scaled with the pattern, with four distributions of intensity.
+are made to measure: openings of the photo's lamps, scaled with the pattern, with five distributions of intensity.
 Radiance then recomputes the illuminance from the exported files.
 
 Prints a line for each design, and what it misses. --record appends the results to a file of JSON lines and leaves out
@@ -33,14 +33,14 @@ import luxfer  # noqa: E402
 from design_radiance import CONTEXT  # noqa: E402
 from design_rooms import ROOMS  # noqa: E402
 from luxfer import design  # noqa: E402
-from luxfer.design import motif, pictures, radiance  # noqa: E402
+from luxfer.design import likeness, motif, pictures, radiance  # noqa: E402
 
 PHOTOS = (
     "alma_corridor_far atg_lines_a atg_lines_b gutsy_classroom_lowres junda_auditorium_m2 junda_classroom_c1 "
     "junda_classroom_c3 junda_theatre_l4 museum_tracks_a museum_tracks_b"
 ).split()
 #: Powers of the cosine with which the intensity falls.
-OPTICS = {"diffuser": 1, "prisms": 2, "louvre": 4, "reflector": 8}
+OPTICS = {"diffuser": 1, "satin": 1.4, "prisms": 2, "louvre": 4, "reflector": 8}
 #: Lumens per m² of the opening at full power: of small spots, of panels, and lumens that are added to the latter.
 SPOT, PANEL, ADDED = 2e5, 25e3, 2000
 #: Lumens per watt of the luminaires. Share by which limits of illuminance are exceeded (Wishes.reserve).
@@ -51,7 +51,7 @@ RAYS, OTHER_RAYS, LEAST_RAYS, MOST_RAYS, RETRY = 8192, 4096, 2, 512, 8
 #: Size of the parts of a luminaire over their distance.
 PARTS = ("-ds", "0.1")
 #: Largest change of the pattern's statistics, and colour difference of the surfaces, with which a look is kept.
-PATTERN, DELTA_E = 0.10, 3.0
+PATTERN, DELTA_E = likeness.SMALL_PATTERN, likeness.SMALL_DELTA_E
 
 
 def product(optics: str, length: float, width: float) -> design.Product:

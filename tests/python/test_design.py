@@ -432,6 +432,24 @@ class Solver(Case):
         self.assertAlmostEqual(worst_one, 0.5, places=6)
         self.assertAlmostEqual(found.x[0], 1.5, places=6)
 
+    def test_a_known_contradiction_is_proved_without_solving(self):
+        def apart(gap: float) -> convex.Limits:  # x² + y² ≤ 1 and x ≥ 1 + gap
+            linear = np.array([[0.0, 0.0], [-1.0, 0.0]])
+            return convex.Limits(np.array([[2.0, 2.0], [0.0, 0.0]]), linear, np.array([-1.0, 1 + gap]))
+
+        low, high = np.full(2, -3.0), np.full(2, 3.0)
+        known = convex.Contradictions()
+        self.assertEqual(known.bound(apart(1.0), low, high), -np.inf)
+        smallest, found = convex.min_violation(apart(1.0), convex.box(low, high), np.zeros(2))
+        known.add(found.multipliers[:2])
+        # Strong duality: the multipliers prove the violation itself, and a lower bound for other gaps.
+        self.assertAlmostEqual(known.bound(apart(1.0), low, high), smallest, places=6)
+        for gap in (0.2, 3.0):
+            least, _ = convex.min_violation(apart(gap), convex.box(low, high), np.zeros(2))
+            self.assertLessEqual(known.bound(apart(gap), low, high), least + 1e-9)
+        self.assertLess(known.bound(apart(-0.5), low, high), 0, "limits that can be met")
+        self.assertEqual(known.decided, 3)
+
     def test_a_look_that_meets_the_limits_is_kept(self):
         found = solved(at_least("mean", 50))
         self.assertTrue(found.feasible)

@@ -140,9 +140,29 @@ class Arrangements(Case):
         self.assertGreater(len(found.project.luminaires), 4)
         self.assertAlmostEqual(found.offer.product.size[0], 0.15, places=5, msg="half the pattern, half the opening")
         self.assertLess(found.look.pattern, 0.1, "as a made-to-measure luminaire keeps the luminous share")
+        # Refinement does not move luminaires closer together than they were made for.
+        self.assertIn(found.scale, search.scales)
         # One size for all scales changes the statistics.
         fixed = lit.arrange([made(1.0)], search=search)
         self.assertGreater(fixed.look.pattern, 2 * found.look.pattern)
+
+    def test_large_changes_of_one_part_cost_more(self):
+        look = lambda pattern, delta_e: likeness.Likeness(pattern, 0, 0.1, delta_e, 0, 1, 0, (0, 0), 0)  # noqa: E731
+        small, large = look(0.1, 3.0), look(0.1, 6.0)
+        self.assertEqual(small.cost, small.total)
+        self.assertEqual((large.total, large.cost), (small.total, small.total + 1), "twice the small difference")
+        self.assertLess(look(0.1, 3.0).cost, look(0.0, 6.0).cost)
+        self.assertGreater(look(0.0, 6.0).cost, look(0.0, 3.1).cost)
+
+    def test_cubic_weights_are_exact_for_straight_lines(self):
+        x = np.array([-0.5, 0.0, 0.3, 1.0, 1.9, 2.0, 7.0])
+        for count in (1, 2, 3, 6):
+            values = np.linspace(0, 2, count) if count > 1 else np.array([1.0])
+            weights = coefficients._cubic(values, x)
+            np.testing.assert_allclose(weights.sum(axis=0), 1, atol=1e-12)
+            # Places outside the grid count as its border.
+            line = 3 * np.clip(x, 0, 2) - 1 if count > 1 else 2.0
+            np.testing.assert_allclose((3 * values - 1) @ weights, line, atol=1e-12)
 
     def test_equal_light_shares_its_coefficients(self):
         kinds = [coefficients.kind(room(), panel(f), (1.0, 1.0, 1.0)) for f in (1000.0, 1500.0)]

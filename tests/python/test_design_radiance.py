@@ -152,8 +152,8 @@ class Recomputed(Case):
             lamp = design.Luminaire(lopsided(), centre, 0.7, axis, c0)
             lit = replace(base, luminaires=[lamp])
             radiance.export(lit, self.folder)
-            octree = radiance._octree(self.folder, json.loads((self.folder / "index.json").read_text()))
-            theirs = radiance._traced(octree, self.folder / "area1.pts", DIRECT)
+            radiance._compile(self.folder, json.loads((self.folder / "index.json").read_text()))
+            theirs = radiance._traced(self.folder / "area1.pts", DIRECT)
             ours = measure(lit.lit(), lit.areas[0], 4096).values
             np.testing.assert_allclose(theirs, ours, rtol=0.01, atol=0.003 * ours.max(), err_msg=f"{axis} {c0}")
 
@@ -171,6 +171,13 @@ class Recomputed(Case):
         found = lit.check()
         radiance.export(lit, self.folder)
         second = radiance.recompute(lit, found, self.folder, ROUGH)
+        compiled = self.folder / radiance.OCTREE
+        made = compiled.stat().st_mtime_ns
+        again = radiance.recompute(lit, replace(found, findings=found.findings[:1]), self.folder, DIRECT)
+        self.assertEqual(made, compiled.stat().st_mtime_ns, "an exported design is compiled once")
+        self.assertLess(again[0].value, second[0].value, "direct light alone")
+        radiance.export(lit, self.folder)
+        self.assertFalse(compiled.exists(), "files that are written anew must be compiled anew")
         self.assertEqual([s.finding.requirement.quantity for s in second], ["mean", "uniformity", "modelling"])
         self.assertTrue(all(s.confirms for s in second), "\n".join(map(str, second)))
         for s, tolerance in zip(second, (0.015, 0.03, 0.03)):

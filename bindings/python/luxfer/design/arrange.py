@@ -4,12 +4,14 @@ all requirements.
 1. Find the pattern of the photo's lamps (motif.py), and make candidates: each product, with the pattern scaled, turned
    and shifted. Lamps that do not fit on the ceiling, or lie in a keep-out rectangle, are left out.
 2. Measure coefficients once (coefficients.py). With them, find the dimmers of each candidate that meet the
-   requirements. Candidates are tried in the order of the distance that they have with the best dimmers without
-   requirements; the search ends when no remaining candidate can be closer. Candidates that are too dark at full power
-   are left out first.
-3. Improve scale and offset of the closest candidates by small steps.
-4. Solve for the dimmers of the closest candidate anew with its own paths, and check it with others (solve.py). If it
-   does not pass, the next one is tried.
+   requirements. Candidates are tried in the order of the cost (likeness.py) that they have with the best dimmers
+   without requirements; the search ends when no remaining candidate can be closer. Candidates that are too dark at
+   full power are left out first, then those that cannot meet the requirements for the same reason as an earlier one.
+3. Improve scale and offset of the closest candidates by small steps; luminaires that are made to measure for one scale
+   keep it.
+4. Solve for the dimmers of the closest candidates anew with their own paths, and check them with others (solve.py).
+   The closest one that passes is the design; the others are solved for only if they may still be closer. The checks
+   have few paths first, which wide margins make up for, and all paths only if no candidate passes.
 
 Only the paths are random, and their seeds are fixed: equal input gives an equal design.
 """
@@ -17,9 +19,8 @@ Only the paths are random, and their seeds are fixed: equal input gives an equal
 from __future__ import annotations
 
 import heapq
-import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -29,28 +30,28 @@ from numpy.typing import NDArray
 from ..photometry import colour_of_temperature, colour_temperature
 from . import areas as made
 from . import coefficients, likeness, motif
+from .candidates import Candidate, Patterns, Search
+from .convex import Contradictions
 from .explain import Relaxation, relaxations
 from .likeness import Likeness
 from .look import distance, objective
 from .luminaires import dimmed
 from .measure import dark_and_spread, measure
-from .motif import Motif, Placed
-from .solve import SEED_OFFSET, Solution, Wishes, first_margins, nearest, solve, start_of
+from .solve import SEED_OFFSET, Solution, Wishes, first_margins, measured_model, nearest, solve, start_of
 from .standard import OF_AREAS
 
 if TYPE_CHECKING:
     from ..scene import Scene
     from .areas import Area
+    from .check import Settings
     from .coefficients import Coefficients, Kind
-    from .constraints import Model
     from .luminaires import Luminaire, Product
     from .project import Project
-    from .rooms import Room
     from .standard import Requirement
 
-#: Margins of the first choice in addition to the margins of the solution, as a share of the limit and in units of UGR,
-#: because interpolated coefficients are uncertain. [convention]
-MARGIN, GLARE_MARGIN = 0.01, 0.4
+#: Margins of the first choice in addition to the margins of the solution, as a share of the limit of means, of single
+#: points, and in units of UGR, because interpolated coefficients are uncertain. [convention]
+MARGIN, POINT_MARGIN, GLARE_MARGIN = 0.01, 0.03, 0.4
 #: First step of the scale as a factor, and of the offset in shares of the lattice; each round halves them.
 #: [convention]
 SCALE_STEP, OFFSET_STEP, ROUNDS = 1.1, 0.125, 3
@@ -59,11 +60,17 @@ MIN_GAIN = 0.003
 #: Number of candidates that miss the requirements by the least and for which relaxed requirements are tried.
 #: [convention]
 EXPLAINED = 3
+#: Number of candidates that are solved for to find those. [convention]
+EXAMINED = 40
 #: A requirement changes the look if the total distance without it is smaller by more than this. [convention]
 PRICE = 0.002
+#: A limit with more room than this share does not bind: the error of the solution is far below. [rounding]
+SLACK = 1e-3
 #: Points of each area that measure the responses of the final dimmers, paths for each point that measure the surfaces.
 #: [convention]
 FINAL_POINTS, SURFACE_PATHS = 32, 256
+#: Paths for each point at which the first check of a candidate ends. [convention]
+FEW_PATHS = 1024
 
 
 @dataclass(frozen=True)
@@ -85,41 +92,6 @@ class Offer:
 
 
 @dataclass(frozen=True)
-class Search:
-    """The allowed changes of the pattern."""
-
-    scales: tuple[float, ...] = (0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.12, 1.25, 1.4, 1.6, 1.8, 2.0)
-    """Factors of its size that are tried first."""
-    turns: tuple[float, ...] = (0.0, 90.0)
-    """Turns in degrees."""
-    offsets: tuple[float, ...] = (0.0, 0.25, 0.5, 0.75)
-    """Shifts along both vectors of the pattern, as shares of them, that are tried first."""
-    max_lamps: int = 80
-    """Largest number of luminaires."""
-    keep_out: tuple[tuple[float, float, float, float], ...] = ()
-    """Rectangles of the plan in metres, a0, b0, a1, b1, in which no luminaire may hang."""
-    tries: int = 400
-    """Largest number of candidates whose dimmers are solved for."""
-    finalists: int = 3
-    """Largest number of candidates that are solved for and checked with their own paths."""
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """A pattern with a product."""
-
-    offer: int
-    scale: float
-    turn: float
-    offset: tuple[float, float]
-    lamps: Placed = field(repr=False)
-    pattern: float
-    """Change of the statistics of the pattern."""
-    bound: float
-    """Distance of the look that no dimmers can reduce."""
-
-
-@dataclass(frozen=True)
 class Arrangement:
     """A design with its places, or the explanation why no design was found."""
 
@@ -134,7 +106,7 @@ class Arrangement:
     turn: float
     offset: tuple[float, float]
     tried: int
-    """Number of patterns whose dimmers were solved for."""
+    """Number of patterns that were tried."""
     met: int
     """Number of them that meet the requirements by the coefficients."""
     prices: tuple[tuple[Requirement, float], ...] = ()
@@ -169,11 +141,8 @@ class _Task:
     offers: Sequence[Offer]
     search: Search
     wishes: Wishes
-    kinds: Sequence[Kind]
     table: Coefficients
-    motif: Motif
-    pattern: NDArray[np.float64]
-    """Statistics of the photo's pattern."""
+    patterns: Patterns
     surfaces: Sequence[Area]
     copy: NDArray[np.float64]
     """Illuminance of the surfaces by the photo's lamps, by coefficients or paths."""
@@ -181,6 +150,27 @@ class _Task:
     """Flux of the photo's lamps."""
     colours: Sequence[float]
     """Colour difference of each offer."""
+    margins: dict[Requirement, float]
+    """The requirements that dimmers can meet, with margins for coefficients that are interpolated."""
+    known: Contradictions = field(default_factory=Contradictions)
+    """Reasons why patterns cannot meet the requirements."""
+
+
+@dataclass(frozen=True)
+class _Rated:
+    """A candidate by the coefficients."""
+
+    candidate: Candidate
+    violation: float
+    """A share by which it misses the requirements."""
+    look: Likeness | None = None
+    """Its look with the best dimmers that meet the requirements; None if none do."""
+    dimmers: NDArray[np.float64] | None = None
+
+    @property
+    def cost(self) -> float:
+        """The cost of its look; infinite if it misses the requirements."""
+        return math.inf if self.look is None else self.look.cost
 
 
 def arrange(
@@ -192,7 +182,9 @@ def arrange(
         raise ValueError("there is no product to design with: offers is empty")
     wishes = replace(wishes, points=wishes.points or FINAL_POINTS)
     found = motif.find(project.room, project.luminaires)
-    candidates, kinds, colours = _candidates(project, chosen, search, found)
+    kinds, colours = _kinds(project, chosen)
+    patterns = Patterns(project.room, found, search, kinds, colours)
+    candidates = patterns.all([o.scale for o in chosen])
     if not candidates:
         raise ValueError(
             "no pattern has a luminaire that fits on the ceiling outside the keep-out rectangles, with at most "
@@ -208,160 +200,123 @@ def arrange(
     rated = {r.area for r in project.requirements if r.quantity == "glare"}
     eyes = [o for o in project.observers if o.name in rated]
     seed, below = project.chosen.seed + SEED_OFFSET, _below(project)
-    table = coefficients.measure(
-        project.room, kinds, angles, wanted, eyes, below, project.chosen.maintenance, seed
-    )
+    table = coefficients.measure(project.room, kinds, angles, wanted, eyes, below, project.chosen.maintenance, seed)
     flux = sum(lamp.flux for lamp in project.luminaires)
-    pattern = _statistics(project.room, found)
-    task = _Task(project, chosen, search, wishes, kinds, table, found, pattern, surfaces, copy, flux, colours)
+    margins = _margins(project.requirements, wishes.reserve)
+    task = _Task(project, chosen, search, wishes, table, patterns, surfaces, copy, flux, colours, margins)
     return _best(task, candidates)
 
 
-def _candidates(
-    project: Project, offers: Sequence[Offer], search: Search, found: Motif
-) -> tuple[list[Candidate], list[Kind], list[float]]:
-    """All patterns, in the order of the closeness to the look that they can reach; the kinds of luminaires, and their
-    colours."""
-    room, context = project.room, project.room.scene.context
+def _kinds(project: Project, offers: Sequence[Offer]) -> tuple[list[Kind], list[float]]:
+    """The kinds of luminaires, and the colour difference of each."""
     photo = _mean_colour(project.luminaires)
-    kinds, colours = [], []
-    for offer in offers:
-        light = _nearest_colour(context, photo, offer.kelvin)
-        kinds.append(coefficients.kind(room, offer.product, light))
-        colours.append(likeness.colour_difference(photo, np.array(light)))
-    before = _statistics(room, found)
-    out = []
-    for number, (scale, turn) in itertools.product(range(len(offers)), itertools.product(search.scales, search.turns)):
-        if offers[number].scale not in (None, scale):
-            continue
-        for offset in itertools.product(search.offsets, repeat=2):
-            made_one = _candidate(
-                project, found, before, search, kinds[number], number, scale, turn, offset, colours[number]
-            )
-            if made_one is not None:
-                out.append(made_one)
-    return sorted(out, key=lambda c: c.bound), kinds, colours
-
-
-def _statistics(room: Room, found: Motif) -> NDArray[np.float64]:
-    """Statistics of the photo's pattern on the ceiling."""
-    return likeness.statistics(found.placed(room), room.length * room.width)
-
-
-def _candidate(
-    project: Project,
-    found: Motif,
-    before: NDArray[np.float64],
-    search: Search,
-    one: Kind,
-    number: int,
-    scale: float,
-    turn: float,
-    offset: tuple[float, float],
-    colour: float,
-) -> Candidate | None:
-    """A pattern of a product, compared with the statistics before; None if no lamp fits, or if too many lamps fit."""
-    room, ceiling = project.room, project.room.length * project.room.width
-    lamps = found.placed(room, scale, turn, offset)
-    lamps = replace(lamps, sizes=np.tile(one.sides, (len(lamps.places), 1)))
-    half = motif.extents(lamps.angles, lamps.sizes)
-    low, high = lamps.places - half, lamps.places + half
-    fits = ((low >= -1e-9) & (high <= np.array([room.length, room.width]) + 1e-9)).all(axis=1)
-    for a0, b0, a1, b1 in search.keep_out:
-        fits &= ~((high > (a0, b0)) & (low < (a1, b1))).all(axis=1)
-    lamps = lamps.only(fits)
-    if not 1 <= len(lamps.places) <= search.max_lamps:
-        return None
-    change = likeness.pattern_distance(before, likeness.statistics(lamps, ceiling))
-    bound = math.hypot(change, likeness.moved(scale, turn, offset, colour))
-    return Candidate(number, scale, turn, offset, lamps, change, bound)
+    lights = [_nearest_colour(project.room.scene.context, photo, o.kelvin) for o in offers]
+    kinds = [coefficients.kind(project.room, o.product, light) for o, light in zip(offers, lights)]
+    return kinds, [likeness.colour_difference(photo, np.array(light)) for light in lights]
 
 
 def _best(task: _Task, candidates: Sequence[Candidate]) -> Arrangement:
     """Searches the candidates, and checks the closest ones."""
-    margins = _margins(task.project.requirements, task.wishes.reserve)
-    met: list[tuple[float, Candidate]] = []
-    missed: list[tuple[float, Candidate]] = []
+    met: list[_Rated] = []
+    missed: list[_Rated] = []
     solved = 0
-    # For each candidate: a lower bound of its distance, whether this is the distance with the best dimmers, its number.
+    # For each candidate: a lower bound of its cost, whether this is the cost with the best dimmers, its number.
     queue = [(c.bound, False, number) for number, c in enumerate(candidates)]
     heapq.heapify(queue)
-    while queue and solved < task.search.tries:
+    while queue and solved - task.known.decided < task.search.tries:
         least, with_dimmers, number = heapq.heappop(queue)
-        worst = sorted(d for d, _ in met)[: task.search.finalists]
+        worst = sorted(one.cost for one in met)[: task.search.finalists]
         if len(worst) == task.search.finalists and least >= worst[-1]:
             break
         candidate = candidates[number]
-        model = task.table.model(candidate.offer, candidate.lamps)
         if not with_dimmers:
-            if (dark := _darkness(task, model, margins)) > 0:
-                missed.append((dark, candidate))
+            least, dark = _bounds(task, candidate)
+            if dark > 0:
+                missed.append(_Rated(candidate, dark))
             else:
-                heapq.heappush(queue, (max(least, _unlimited(task, candidate, model)), True, number))
+                heapq.heappush(queue, (least, True, number))
             continue
+        one = _rated(task, candidate, task.margins, task.known)
         solved += 1
-        total, violation = _rated(task, candidate, margins, model)
-        (missed if total is None else met).append((violation if total is None else total, candidate))
+        (met if one.look else missed).append(one)
     count = len(met) + len(missed)
-    met.sort(key=lambda m: m[0])
-    missed.sort(key=lambda m: m[0])
+    met.sort(key=lambda one: one.cost)
     if not met:
-        return _failed(task, missed, margins, count)
-    better = [_refined(task, one, margins) for one in met[: task.search.finalists]]
-    final = None
-    for _, candidate in sorted(better, key=lambda m: m[0]):
-        solution = _solved(task, candidate)
-        found = _result(task, candidate, solution, count, len(met))
-        final = found if final is None or (found.feasible and not final.feasible) else final
-        if found.feasible:
-            return replace(found, prices=tuple(_prices(task, candidate, margins)))
-    assert final is not None
-    return replace(final, relaxations=final.solution.relaxations)
+        return _failed(task, missed, count)
+    better = sorted((_refined(task, one) for one in met[: task.search.finalists]), key=lambda one: one.cost)
+    settings = task.project.chosen
+    few = replace(settings, max_samples=max(settings.samples, min(settings.max_samples, FEW_PATHS)))
+    found, best = _checked(task, better, few, count, len(met))
+    if not found.solution.checked.passes:
+        found, best = _checked(task, better, settings, count, len(met))
+    if found.feasible:
+        return replace(found, prices=tuple(_prices(task, best)))
+    return replace(found, relaxations=found.solution.relaxations)
 
 
-def _unlimited(task: _Task, candidate: Candidate, model: Model) -> float:
-    """The total distance of a candidate with the dimmers that would be best without requirements."""
-    photo, rows, hessian, gradient = _aim(task, candidate, model)
+def _checked(
+    task: _Task, closest: Sequence[_Rated], settings: Settings, tried: int, met: int
+) -> tuple[Arrangement, _Rated]:
+    """The closest of the candidates that passes, or the first one if none does."""
+    best: tuple[Arrangement, _Rated] | None = None
+    for one in closest:
+        if best and best[0].feasible and best[0].look.cost <= one.cost:
+            break
+        found = _result(task, one.candidate, _solved(task, one.candidate, settings), tried, met)
+        if best is None or (found.feasible and not (best[0].feasible and best[0].look.cost <= found.look.cost)):
+            best = found, one
+    assert best is not None
+    return best
+
+
+def _bounds(task: _Task, candidate: Candidate) -> tuple[float, float]:
+    """The cost of a candidate with the dimmers that would be best without requirements, and the share by which it
+    misses a mean illuminance with all lamps at their highest dimmers, 0 if it reaches all means. The latter excludes
+    most patterns of too few lamps without solving for their dimmers."""
+    means = task.table.means(candidate.offer, candidate.lamps)
+    dark = 0.0
+    for r, margin in task.margins.items():
+        if r.quantity == "mean" and r.is_minimum and r.limit > 0:
+            full = task.wishes.max_dimmer * means[r.area].sum() + task.table.responses[r.area].mean_other
+            dark = max(dark, 1 - task.table.maintenance * full / (r.limit * (1 + margin)))
+    if dark > 0:
+        return math.inf, dark
+    photo, rows, hessian, gradient = _aim(task, candidate, means)
     dimmers = np.clip(np.linalg.solve(hessian, -gradient)[:-1], 0, task.wishes.max_dimmer)
-    return _likeness(task, candidate, photo, dimmers, task.copy * (rows @ dimmers)).total
-
-
-def _darkness(task: _Task, model: Model, margins: dict[Requirement, float]) -> float:
-    """The share by which a candidate misses a mean illuminance with all lamps at their highest dimmers; 0 if it reaches
-    all means. This excludes most patterns of too few lamps without solving for their dimmers."""
-    full = np.full(len(model.luminaires), task.wishes.max_dimmer)
-    wanted = [(r.at_least * (1 + m), r) for r, m in margins.items() if r.quantity == "mean" and r.is_minimum]
-    return max([0.0, *(1 - model.value(r, full) / limit for limit, r in wanted if limit > 0)])
+    return max(candidate.bound, _likeness(task, candidate, photo, dimmers, task.copy * (rows @ dimmers)).cost), 0.0
 
 
 def _margins(requirements: Sequence[Requirement], reserve: float) -> dict[Requirement, float]:
     """Margins for coefficients that are interpolated."""
-    more = {"glare": GLARE_MARGIN, "density": 0.0, "flux": 0.0}
+    more = {"uniformity": POINT_MARGIN, "minimum": POINT_MARGIN, "glare": GLARE_MARGIN, "density": 0.0, "flux": 0.0}
     return {r: m + more.get(r.quantity, MARGIN) for r, m in first_margins(requirements, reserve).items()}
 
 
-def _aim(task: _Task, candidate: Candidate, model: Model) -> tuple[NDArray, NDArray, NDArray, NDArray]:
+def _aim(
+    task: _Task, candidate: Candidate, means: Mapping[str, NDArray] | None = None
+) -> tuple[NDArray, NDArray, NDArray, NDArray]:
     """Wanted dimmers, brightness of the surfaces by each lamp as shares of the copy's, and the aim of the dimmers."""
+    means = means or task.table.means(candidate.offer, candidate.lamps)
     product = task.offers[candidate.offer].product
     photo = task.flux * candidate.lamps.flux / candidate.lamps.flux.sum() / product.flux
-    responses = [model.responses[a.name] for a in task.surfaces]
-    rows = np.array([task.table.maintenance * (r.area.weights @ r.matrix) for r in responses])
+    rows = np.array([task.table.maintenance * means[a.name] for a in task.surfaces]).reshape(-1, len(photo))
     rows = rows / task.copy[:, None]
     hessian, gradient = objective(photo, np.full(len(photo), product.flux), rows if len(rows) else None)
     return photo, rows, hessian, gradient
 
 
 def _rated(
-    task: _Task, candidate: Candidate, margins: dict[Requirement, float], model: Model | None = None
-) -> tuple[float | None, float]:
-    """The total distance of a candidate by the coefficients, or None, and the share by which it misses requirements."""
-    model = model or task.table.model(candidate.offer, candidate.lamps)
-    photo, rows, hessian, gradient = _aim(task, candidate, model)
+    task: _Task, candidate: Candidate, margins: dict[Requirement, float], known: Contradictions | None = None
+) -> _Rated:
+    """A candidate by the coefficients."""
+    photo, rows, hessian, gradient = _aim(task, candidate)
+    model = task.table.model(candidate.offer, candidate.lamps)
     coarse = replace(task.wishes, levels=())
-    dimmers, violation = nearest(model, margins, (hessian, gradient), np.eye(len(photo)), coarse)
+    dimmers, violation = nearest(model, margins, (hessian, gradient), np.eye(len(photo)), coarse, known)
     if dimmers is None:
-        return None, violation
-    return _likeness(task, candidate, photo, dimmers, task.copy * (rows @ dimmers)).total, violation
+        return _Rated(candidate, violation)
+    look = _likeness(task, candidate, photo, dimmers, task.copy * (rows @ dimmers))
+    return _Rated(candidate, violation, look, dimmers)
 
 
 def _likeness(
@@ -369,7 +324,7 @@ def _likeness(
 ) -> Likeness:
     """The distance of a candidate with dimmers and its light on the surfaces."""
     change = distance(photo, dimmers, np.ones(len(photo)))
-    light = np.array(task.kinds[candidate.offer].colour)
+    light = np.array(task.table.kinds[candidate.offer].colour)
     before = _mean_colour(task.project.luminaires)
     ratios = likeness.surface_distance(task.copy, surfaces) if len(surfaces) else 0.0
     tones = likeness.surface_delta_e(task.copy, surfaces, before, light) if len(surfaces) else 0.0
@@ -386,38 +341,41 @@ def _likeness(
     )
 
 
-def _refined(
-    task: _Task, start: tuple[float, Candidate], margins: dict[Requirement, float]
-) -> tuple[float, Candidate]:
+def _refined(task: _Task, start: _Rated) -> _Rated:
     """A candidate that is at least as close as the given one, found near it by steps of scale and offset that are
     halved."""
-    best, now = start
+    best = start
     for turn in range(ROUNDS):
         factor, step = SCALE_STEP ** (0.5**turn), OFFSET_STEP * 0.5**turn
+        now = best.candidate
         u, v = now.offset
-        moves = [(now.scale * f, (u, v)) for f in (1 / factor, factor)]
+        made_for_one = task.offers[now.offer].scale is not None
+        moves = [] if made_for_one else [(now.scale * f, (u, v)) for f in (1 / factor, factor)]
         moves += [(now.scale, (u + a, v + b)) for a, b in ((-step, 0), (step, 0), (0, -step), (0, step))]
         for scale, offset in moves:
-            kind, colour = task.kinds[now.offer], task.colours[now.offer]
-            one = _candidate(
-                task.project, task.motif, task.pattern, task.search, kind, now.offer, scale, now.turn, offset, colour
-            )
-            if one is None or one.bound >= best - MIN_GAIN:
+            one = task.patterns.made(now.offer, scale, now.turn, offset)
+            if one is None or max(one.bound, _bounds(task, one)[0]) >= best.cost - MIN_GAIN:
                 continue
-            total, _ = _rated(task, one, margins)
-            if total is not None and total < best - MIN_GAIN:
-                best, now = total, one
-    return best, now
+            found = _rated(task, one, task.margins, task.known)
+            best = found if found.cost < best.cost - MIN_GAIN else best
+    return best
 
 
-def _solved(task: _Task, candidate: Candidate) -> Solution:
+def _solved(task: _Task, candidate: Candidate, settings: Settings) -> Solution:
     """The dimmers of a candidate by its own paths, checked."""
-    model = task.table.model(candidate.offer, candidate.lamps)
-    photo, rows, _, _ = _aim(task, candidate, model)
-    project, below = task.project, task.table.below
-    kind, placed = task.kinds[candidate.offer], zip(candidate.lamps.places, candidate.lamps.angles)
-    hung = [coefficients.hung(project.room, kind, place, float(angle), below) for place, angle in placed]
-    lamps = dimmed(hung, photo.tolist())
+    photo, rows, _, _ = _aim(task, candidate)
+    project, coarse = task.project, task.table.model(candidate.offer, candidate.lamps)
+    lamps = dimmed(coarse.luminaires, photo.tolist())
+    model = measured_model(
+        project.room.scene,
+        lamps,
+        [r for r in project.requirements if r.quantity != "glare"],
+        project.areas,
+        (),
+        project.room.floor_area,
+        settings,
+        task.wishes,
+    )
     return solve(
         project.room.scene,
         lamps,
@@ -425,8 +383,10 @@ def _solved(task: _Task, candidate: Candidate) -> Solution:
         project.areas,
         project.observers,
         floor_area=project.room.floor_area,
-        settings=project.chosen,
+        settings=settings,
         wishes=task.wishes,
+        # Measuring the glare of each luminaire would take a scene for each; the check has its own glare anyway.
+        model=replace(model, glare=coarse.glare),
         surfaces=rows if len(rows) else None,
     )
 
@@ -444,36 +404,55 @@ def _result(task: _Task, candidate: Candidate, solution: Solution, tried: int, m
     )
 
 
-def _failed(
-    task: _Task, missed: Sequence[tuple[float, Candidate]], margins: dict[Requirement, float], tried: int
-) -> Arrangement:
+def _failed(task: _Task, missed: Sequence[_Rated], tried: int) -> Arrangement:
     """The candidate that misses the requirements by the least share, and the result of relaxing each requirement
     alone."""
     best: dict[Requirement, Relaxation] = {}
-    for _, candidate in missed[:EXPLAINED]:
+    closest = _closest(task, missed)
+    for candidate in closest:
         model = task.table.model(candidate.offer, candidate.lamps)
         groups = np.eye(len(candidate.lamps.places))
         hard, start = start_of(groups, replace(task.wishes, levels=()))
-        _, eased = relaxations(model, list(margins), groups, hard, start)
+        _, eased = relaxations(model, list(task.margins), groups, hard, start)
         for one in eased:
             r, known = one.requirement, best.get(one.requirement)
             nearer = known is None or (one.attainable - known.attainable) * (1 if r.is_minimum else -1) > 0
             best[r] = one if nearer else known
-    candidate = missed[0][1]
-    found = _result(task, candidate, _solved(task, candidate), tried, 0)
-    return replace(found, relaxations=tuple(best[r] for r in margins if r in best))
+    found = _result(task, closest[0], _solved(task, closest[0], task.project.chosen), tried, 0)
+    return replace(found, relaxations=tuple(best[r] for r in task.margins if r in best))
 
 
-def _prices(
-    task: _Task, candidate: Candidate, margins: dict[Requirement, float]
-) -> list[tuple[Requirement, float]]:
-    """The decrease of a candidate's total distance without each requirement, by the coefficients; the largest first."""
-    whole, _ = _rated(task, candidate, margins)
+def _closest(task: _Task, missed: Sequence[_Rated]) -> list[Candidate]:
+    """The candidates that miss the requirements by the least shares. For most of them only a lower bound is known, so
+    those with the least bounds are solved for."""
+    queue = [(one.violation, False, number) for number, one in enumerate(missed)]
+    heapq.heapify(queue)
+    out: list[Candidate] = []
+    solved = 0
+    while queue and len(out) < EXPLAINED:
+        violation, exact, number = heapq.heappop(queue)
+        candidate = missed[number].candidate
+        if exact or solved == EXAMINED:
+            out.append(candidate)
+        else:
+            solved += 1
+            heapq.heappush(queue, (max(violation, _rated(task, candidate, task.margins).violation), True, number))
+    return out
+
+
+def _prices(task: _Task, chosen: _Rated) -> list[tuple[Requirement, float]]:
+    """The decrease of a candidate's total distance without each requirement, by the coefficients; the largest first.
+    Requirements that do not bind cost nothing."""
+    assert chosen.look is not None and chosen.dimmers is not None
+    model = task.table.model(chosen.candidate.offer, chosen.candidate.lamps)
     out = []
-    for r in margins:
-        total, _ = _rated(task, candidate, {k: m for k, m in margins.items() if k is not r})
-        if whole is not None and total is not None and whole - total > PRICE:
-            out.append((r, whole - total))
+    for r, margin in task.margins.items():
+        if model.limits(r, margin).values(chosen.dimmers).max() < -SLACK:
+            continue
+        without = _rated(task, chosen.candidate, {k: m for k, m in task.margins.items() if k is not r})
+        gain = chosen.look.total - without.look.total if without.look else 0.0
+        if gain > PRICE:
+            out.append((r, gain))
     return sorted(out, key=lambda p: -p[1])
 
 

@@ -26,7 +26,7 @@ from .areas import Area, Patch
 from .constraints import Model
 from .luminaires import Luminaire, Product
 from .motif import extents, is_wide
-from .responses import GlareResponse, Response, glare_parts, respond_all
+from .responses import GlareResponse, Response, all_on, glare_parts, respond_lit
 
 if TYPE_CHECKING:
     from .motif import Placed
@@ -126,27 +126,28 @@ class Grid:
 
     def weights(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
         """Weights (places of the grid, n) by which the luminaires of the grid stand for luminaires at n places."""
-        both = [np.outer(_cubic(self.along, a), _cubic(self.across, b)).ravel() for a, b in places]
-        return np.stack(both, axis=1)
+        along, across = _cubic(self.along, places[:, 0]), _cubic(self.across, places[:, 1])
+        return (along[:, None] * across[None]).reshape(-1, len(places))
 
 
-def _cubic(values: NDArray[np.float64], x: float) -> NDArray[np.float64]:
-    """Weights of cubic interpolation between evenly spaced values (Catmull and Rom 1974); beyond the first and the last
-    one, the function continues straight."""
-    out = np.zeros(len(values))
-    if len(values) == 1:
-        return np.ones(1)
-    i = int(np.clip(np.searchsorted(values, x) - 1, 0, len(values) - 2))
-    u = float(np.clip((x - values[i]) / (values[i + 1] - values[i]), 0, 1))
-    before, after = u * (1 - u) ** 2 / -2, u * u * (1 - u) / -2
-    out[i : i + 2] = 1 - u * u * (2.5 - 1.5 * u), 1 - (1 - u) ** 2 * (1 + 1.5 * u)
-    for weight, outer, border, inner in ((before, i - 1, i, i + 1), (after, i + 2, i + 1, i)):
-        if 0 <= outer < len(values):
-            out[outer] += weight
-        else:
-            out[border] += 2 * weight
-            out[inner] -= weight
-    return out
+def _cubic(values: NDArray[np.float64], x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Weights (values, x) of cubic interpolation between evenly spaced values (Catmull and Rom 1974); beyond the first
+    and the last one, the function continues straight."""
+    count = len(values)
+    if count == 1:
+        return np.ones((1, len(x)))
+    i = np.clip(np.searchsorted(values, x) - 1, 0, count - 2)
+    u = np.clip((x - values[i]) / (values[i + 1] - values[i]), 0, 1)
+    first, second = 1 - u * u * (2.5 - 1.5 * u), 1 - (1 - u) ** 2 * (1 + 1.5 * u)
+    # One more value on each side; where the function continues straight, it is f(-1) = 2 f(0) - f(1).
+    out = np.zeros((count + 2, len(x)))
+    for step, weight in enumerate((u * (1 - u) ** 2 / -2, first, second, u * u * (1 - u) / -2)):
+        out[i + step, np.arange(len(x))] = weight
+    out[1] += 2 * out[0]
+    out[2] -= out[0]
+    out[-2] += 2 * out[-1]
+    out[-3] -= out[-1]
+    return out[1:-1]
 
 
 @dataclass(frozen=True)
@@ -169,32 +170,52 @@ class Coefficients:
 
     def model(self, number: int, lamps: Placed) -> Model:
         """The responses with which requirements are evaluated, for a pattern of one kind of luminaire."""
-        one = self.kinds[number]
-        keys = np.array([one.key(float(a)) for a in lamps.angles])
-        mixes = []
-        for key in dict.fromkeys(keys.tolist()):
-            grid = self.grids[number, key]
-            share = one.product.flux / self.kinds[grid.measured].product.flux
-            mixes.append((keys == key, grid.columns, share * grid.weights(lamps.places[keys == key])))
-
-        def mixed(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-            out = np.zeros((len(matrix), len(keys)))
-            for which, columns, weights in mixes:
-                out[:, which] = matrix[:, columns] @ weights
-            return out
-
+        one, parts = self.kinds[number], self._parts(number, lamps)
         luminaires = [
             hung(self.room, one, (float(p[0]), float(p[1])), float(a), self.below)
             for p, a in zip(lamps.places, lamps.angles)
         ]
-        responses = {n: replace(r, matrix=mixed(r.matrix)) for n, r in self.responses.items()}
+        responses = {n: replace(r, matrix=_mixed(r.matrix, parts)) for n, r in self.responses.items()}
         glare = {
             o.name: GlareResponse(
-                o, _sources(self.room, one, luminaires, o)[0], mixed(self.veils[o.name]), *self.others[o.name]
+                o, _sources(self.room, one, luminaires, o)[0], _mixed(self.veils[o.name], parts), *self.others[o.name]
             )
             for o in self.observers
         }
         return Model(luminaires, responses, glare, self.maintenance, self.room.floor_area)
+
+    def means(self, number: int, lamps: Placed) -> dict[str, NDArray[np.float64]]:
+        """The mean illuminance of each area by each luminaire at full power."""
+        if not self.responses:
+            return {}
+        return dict(zip(self.responses, _mixed(self._means, self._parts(number, lamps))))
+
+    @cached_property
+    def _means(self) -> NDArray[np.float64]:
+        """The mean illuminance (areas, luminaires) by the luminaires at the places of the grids."""
+        return np.array([r.area.weights @ r.matrix for r in self.responses.values()])
+
+    def _parts(self, number: int, lamps: Placed) -> list[_Part]:
+        """The luminaires of a pattern by their directions, as sums of those of the grids."""
+        one = self.kinds[number]
+        keys, out = np.array([one.key(float(a)) for a in lamps.angles]), []
+        for key in dict.fromkeys(keys.tolist()):
+            grid, which = self.grids[number, key], keys == key
+            share = one.product.flux / self.kinds[grid.measured].product.flux
+            out.append((which, grid.columns, share * grid.weights(lamps.places[which])))
+        return out
+
+
+#: Which luminaires of a pattern, the columns of a grid, and their weights (columns, luminaires).
+_Part = tuple[NDArray[np.bool_], slice, NDArray[np.float64]]
+
+
+def _mixed(matrix: NDArray[np.float64], parts: Sequence[_Part]) -> NDArray[np.float64]:
+    """The columns of a matrix of the luminaires of grids, mixed for the luminaires of a pattern."""
+    out = np.zeros((len(matrix), len(parts[0][0])))
+    for which, columns, weights in parts:
+        out[:, which] = matrix[:, columns] @ weights
+    return out
 
 
 def measure(
@@ -225,9 +246,9 @@ def measure(
             luminaires += [hung(room, one, (a, b), key, below) for a in along for b in across]
     eyes = [_eyes(o) for o in observers]
     # Without bodies: openings at all places of the grid would cover the ceiling.
-    found = respond_all(room.scene, luminaires, areas, paths, seed, "point") if areas else []
-    light = respond_all(room.scene, luminaires, eyes, EYE_PATHS, seed + 1, "point") if eyes else []
-    responses = {r.area.name: r for r in found}
+    lit = all_on(room.scene, luminaires, "point")
+    responses = {a.name: respond_lit(lit, len(luminaires), a, paths, seed + i) for i, a in enumerate(areas)}
+    light = [respond_lit(lit, len(luminaires), e, EYE_PATHS, seed + 1 + i) for i, e in enumerate(eyes)]
     veils = {}
     for o, seen in zip(observers, light):
         direct = np.zeros_like(seen.matrix)

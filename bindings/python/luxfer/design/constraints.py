@@ -91,12 +91,13 @@ class Model:
         bound = 10 ** ((r.limit - margin) / UGR_FACTOR)
         seen = (response.sources > 0).any(axis=1) | (response.other_sources > 0)
         most = response.background.sum(axis=1) + response.other_background
-        scale = bound * np.maximum(most[seen], 1e-300)
+        scale = bound * np.maximum(most, 1e-300)
         constant = UGR_SCALE * response.other_sources - bound * response.other_background
+        # Observers who see no source keep their row, so that the limits of other luminaires have the same order.
         return Limits(
-            2 * UGR_SCALE * response.sources[seen] / scale[:, None],
-            -bound * response.background[seen] / scale[:, None],
-            constant[seen] / scale,
+            2 * UGR_SCALE * response.sources / scale[:, None],
+            -bound * response.background / scale[:, None],
+            np.where(seen, constant / scale, -1.0),
         )
 
 

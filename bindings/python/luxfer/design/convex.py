@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 
 #: Limits that hold by this share leave room for a barrier method to start. [convention]
 CLEAR = 1e-3
+#: Number of reasons of contradictions that are kept. [convention]
+REASONS = 16
 
 
 @dataclass(frozen=True)
@@ -152,3 +154,41 @@ def min_violation(
     begin = np.append(start, worst + 1.0)
     found = minimise(np.zeros((count + 1, count + 1)), gradient, both.joined(floor), begin, enough)
     return float(found.x[-1]), found
+
+
+def violation_bound(limits: Limits, low: Array, high: Array, weights: Array) -> float:
+    """A lower bound of the largest left side where low ≤ x ≤ high, by weights of the limits that are not negative and
+    have the sum 1: the minimum of the weighted mean of the left sides (Lagrange duality, Boyd and Vandenberghe, section
+    5.1). If it is above 0, the limits contradict each other.
+
+    >>> apart = Limits(np.zeros((2, 1)), np.array([[1.0], [-1.0]]), np.array([0.0, 1.0]))  # x ≤ 0 and x ≥ 1
+    >>> violation_bound(apart, np.array([-9.0]), np.array([9.0]), np.array([0.5, 0.5]))
+    0.5
+    """
+    curve, slope = weights @ limits.quadratic, weights @ limits.linear
+    flat = curve <= 0
+    lowest = np.where(flat, np.where(slope > 0, low, high), -slope / np.where(flat, 1.0, curve))
+    x = np.clip(lowest, low, high)
+    return float((0.5 * curve * x + slope) @ x + weights @ limits.constant)
+
+
+class Contradictions:
+    """The reasons why limits contradicted each other, as weights of the limits. Similar problems mostly have the same
+    reason, and one product of matrices per reason proves it, without solving anything."""
+
+    def __init__(self) -> None:
+        self._weights: list[Array] = []
+        self.decided = 0
+        """Number of problems that were found contradictory for a known reason."""
+
+    def bound(self, limits: Limits, low: Array, high: Array) -> float:
+        """The largest lower bound of the violation by the known reasons; -inf without one."""
+        known = [w for w in self._weights if len(w) == len(limits.constant)]
+        found = max((violation_bound(limits, low, high, w) for w in known), default=-np.inf)
+        self.decided += found > 0
+        return found
+
+    def add(self, weights: Array) -> None:
+        """Adds the multipliers of limits whose violation was minimised."""
+        if weights.sum() > 0:
+            self._weights = [weights / weights.sum(), *self._weights[: REASONS - 1]]

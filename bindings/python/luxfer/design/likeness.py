@@ -13,6 +13,9 @@ for the copy itself:
 - `colour`: the same difference between greys under the lamps' mean colours.
 - `scale`, `turn`, `offset`, `exposure`: of the pattern as a factor, in degrees and in shares of its two vectors, and
   of all lamps in stops.
+
+Changes of the pattern, of the surfaces and of the lamps' ratios up to a limit each hardly change the look. The search
+adds the excess over these limits to the total, so that no part changes much for small gains of the others.
 """
 
 from __future__ import annotations
@@ -35,6 +38,9 @@ if TYPE_CHECKING:
 #: the pattern, turning it and a colour difference of 17 count about as much as a change of a brightness ratio by 0.17;
 #: a shift counts little, but enough that lamps do not move for nothing]
 SCALE_WEIGHT, TURN_WEIGHT, SHIFT_WEIGHT, COLOUR_WEIGHT = 0.25, 0.17, 0.1, 0.01
+#: Changes that hardly change the look: of the pattern, of the brightness ratios of the lamps, and the colour difference
+#: of the surfaces. [convention]
+SMALL_PATTERN, SMALL_BRIGHTNESS, SMALL_DELTA_E = 0.10, 0.20, 3.0
 #: Luminance of a grey with the lightness L* = 50 beside white. [convention: CIE 1976 L*a*b*]
 GREY = 0.1842
 #: Linear Rec.709 to XYZ, and its white. [convention: BT.709]
@@ -73,6 +79,11 @@ class Likeness:
         return math.sqrt(sum(s * s for s in shares) + EXPOSURE_WEIGHT * change * change)
 
     @property
+    def cost(self) -> float:
+        """The total and the excess over small changes, by which the search orders designs."""
+        return self.total + excess(self.pattern, self.brightness, self.delta_e)
+
+    @property
     def moved(self) -> float:
         """The part of scale, turn, offset and colour in the total."""
         return moved(self.scale, self.turn, self.offset, self.colour)
@@ -100,6 +111,16 @@ def moved(scale: float, turn: float, offset: tuple[float, float], colour: float)
     shift = math.hypot(*(v - round(v) for v in offset))
     parts = (SCALE_WEIGHT * math.log(scale), TURN_WEIGHT * angle, SHIFT_WEIGHT * shift, COLOUR_WEIGHT * colour)
     return math.sqrt(sum(v * v for v in parts))
+
+
+def excess(pattern: float, brightness: float = 0, delta_e: float = 0) -> float:
+    """The shares by which changes exceed small ones, together.
+
+    >>> excess(0.1, 0.2, 3), round(excess(0.15, 0.2, 6), 3)
+    (0.0, 1.5)
+    """
+    shares = (pattern / SMALL_PATTERN, brightness / SMALL_BRIGHTNESS, delta_e / SMALL_DELTA_E)
+    return sum(max(0.0, s - 1) for s in shares)
 
 
 def statistics(lamps: Placed, ceiling: float) -> NDArray[np.float64]:

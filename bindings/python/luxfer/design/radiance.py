@@ -50,6 +50,8 @@ RTRACE = tuple("-ab 30 -aa 0 -ad 512 -as 0 -lr -30 -lw 1e-3 -ds 0.05 -dj 0 -dc 1
 RECOMPUTED = ("mean", "uniformity", "minimum", "diversity", "modelling")
 #: Name of the file that lists what the folder holds.
 INDEX = "index.json"
+#: Name of the file of the compiled design, which `recompute` makes where it is missing.
+OCTREE = "design.oct"
 
 
 @dataclass(frozen=True)
@@ -95,6 +97,7 @@ def export(project: Project, folder: str | os.PathLike[str]) -> Path:
     notes = [f"light of material {i} is left out" for i in _emitting(project.room.scene)]
     notes += [f"material {i} is matte here, but mirrors in the scene" for i in _glossy(project.room.scene)]
     (place / "room.rad").write_text(_room(project.room.scene))
+    (place / OCTREE).unlink(missing_ok=True)
     lamps = [_lamp(place, project, lamp) for lamp in project.luminaires if lamp.flux > 0]
     files = {}
     for number, area in enumerate(project.areas, 1):
@@ -119,7 +122,8 @@ def recompute(
         raise ValueError(
             f"the files in {place} are those of another design, or of this one before a change: export it anew"
         )
-    octree = _octree(place, listed)
+    if not (place / OCTREE).exists():
+        _compile(place, listed)
     names = {a.name: a for a in project.areas}
     factor, known, out = checked.settings.maintenance, {}, []
     for finding in checked.findings:
@@ -129,7 +133,7 @@ def recompute(
         for kind, area in _grids(names[r.area]):
             key = r.area + kind
             if key not in known:
-                values = _traced(octree, place / listed["areas"][key], settings)
+                values = _traced(place / listed["areas"][key], settings)
                 known[key] = _field(area, values * factor)
         out.append(Second(finding, _value(r.quantity, known[r.area], known.get(f"{r.area}-up"))))
     return out
@@ -240,8 +244,8 @@ def _turns(lamp: Luminaire) -> list[float]:
     return [math.degrees(v) for v in (x, y, z)]
 
 
-def _octree(place: Path, listed: dict[str, Any]) -> bytes:
-    """The room with its luminaires, compiled."""
+def _compile(place: Path, listed: dict[str, Any]) -> None:
+    """Compiles the room with its luminaires into one file that holds all of them, so that no text is read again."""
     parts = [(place / listed["room"]).read_text()]
     made: dict[tuple, str] = {}
     for lamp in listed["luminaires"]:
@@ -255,19 +259,18 @@ def _octree(place: Path, listed: dict[str, Any]) -> bytes:
         to = " ".join(f"{v:.9g}" for v in lamp["position"])
         parts.append(f"!xform -rx {x} -ry {y} -rz {z} -t {to} {made[key]}.rad")
     (place / "design.rad").write_text("\n".join(parts) + "\n")
-    return _run("oconv", ["design.rad"], place, place / "design.oct")
+    (place / OCTREE).write_bytes(_run("oconv", ["-f", "design.rad"], place))
 
 
-def _traced(octree: bytes, points: Path, settings: Sequence[str]) -> NDArray[np.float64]:
+def _traced(points: Path, settings: Sequence[str]) -> NDArray[np.float64]:
     """Illuminance of points in lux."""
-    file = points.parent / "design.oct"
-    printed = _run("rtrace", ["-h", "-I", *settings, file.name], points.parent, given=points.read_bytes())
+    printed = _run("rtrace", ["-h", "-I", *settings, OCTREE], points.parent, given=points.read_bytes())
     rgb = np.array([[float(v) for v in line.split()[:3]] for line in printed.decode().splitlines() if line.strip()])
     return EFFICACY * (rgb @ LUMINANCE)
 
 
-def _run(program: str, words: Sequence[str], place: Path, out: Path | None = None, given: bytes = b"") -> bytes:
-    """Runs a program of Radiance in a folder; its output also goes to a file if one is named."""
+def _run(program: str, words: Sequence[str], place: Path, given: bytes = b"") -> bytes:
+    """Runs a program of Radiance in a folder; returns its output."""
     path, library = _program(program)
     env = dict(os.environ)
     env["PATH"] = os.pathsep.join([str(path.parent), env.get("PATH", "")])
@@ -276,8 +279,6 @@ def _run(program: str, words: Sequence[str], place: Path, out: Path | None = Non
     done = subprocess.run([str(path), *words], cwd=place, env=env, input=given, capture_output=True)
     if done.returncode != 0:
         raise RuntimeError(f"Radiance's {program} failed: {done.stderr.decode(errors='replace').strip()[-500:]}")
-    if out:
-        out.write_bytes(done.stdout)
     return done.stdout
 
 

@@ -53,6 +53,11 @@ class Response:
         """Initial illuminance of the points for dimmers."""
         return self.matrix @ dimmers + self.other
 
+    @property
+    def mean_other(self) -> float:
+        """Mean illuminance by all other light."""
+        return float(self.area.weights @ self.other)
+
 
 @dataclass(frozen=True)
 class GlareResponse:
@@ -88,16 +93,21 @@ def respond_all(
     areas: Sequence[Area],
     paths: int = 1024,
     seed: int = 1,
-    shape: str = "faces",
 ) -> list[Response]:
-    """The responses of several areas. For shape, see lit_scene."""
+    """The responses of several areas."""
+    lit = all_on(scene, luminaires)
+    return [respond_lit(lit, len(luminaires), area, paths, seed + index) for index, area in enumerate(areas)]
+
+
+def all_on(scene: Scene, luminaires: Sequence[Luminaire], shape: str = "faces") -> Scene:
+    """A copy of a scene with luminaires at full power, which are its only punctual lights. For shape, see lit_scene."""
     if scene.counts.lights:
         raise ValueError(f"the scene has {scene.counts.lights} punctual lights of its own: give them as luminaires")
-    lit = lit_scene(scene, dimmed(luminaires, [1.0] * len(luminaires)), shape)
-    return [_respond(lit, len(luminaires), area, paths, seed + index) for index, area in enumerate(areas)]
+    return lit_scene(scene, dimmed(luminaires, [1.0] * len(luminaires)), shape)
 
 
-def _respond(lit: Scene, count: int, area: Area, paths: int, seed: int) -> Response:
+def respond_lit(lit: Scene, count: int, area: Area, paths: int, seed: int) -> Response:
+    """The response of an area to all luminaires of a scene."""
     grids = []
     for patch in area.patches:
         across = POINT * patch.across / np.linalg.norm(patch.across)

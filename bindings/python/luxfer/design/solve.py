@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from .check import Checked, Settings, check
 from .constraints import DIMMABLE, Model
-from .convex import Limits, box, min_violation, minimise
+from .convex import Contradictions, Limits, box, min_violation, minimise
 from .explain import Relaxation, joined, of_groups, relaxations
 from .look import Distance, distance, objective
 from .luminaires import Luminaire, dimmed, lit_scene
@@ -260,17 +260,24 @@ def nearest(
     aim: tuple[NDArray, NDArray],
     groups: NDArray,
     wishes: Wishes,
+    known: Contradictions | None = None,
 ) -> tuple[NDArray | None, float]:
     """The dimmers that minimise the aim (see look.objective) within the limits and margins, or None if no dimmers are
     within them, and a share by which all limits can be missed together, at most twice the smallest one, negative if
-    they can be met."""
+    they can be met. If the limits contradict each other for a known reason, nothing is solved, and the share is a lower
+    bound; a new reason is added to the known ones."""
     hard, start = start_of(groups, wishes)
     parts = [of_groups(model.limits(r, margin), groups) for r, margin in margins.items()]
     limits, violation = hard, -1.0
     if parts:
         soft = joined(parts)
+        bound = known.bound(soft, *_range(groups, wishes)) if known else -np.inf
+        if bound > 0:
+            return None, bound
         violation, inside = min_violation(soft, hard, start, decide=True)
         if violation > -INSIDE:
+            if known:
+                known.add(inside.multipliers[: len(soft.constant)])
             return None, violation
         start, limits = inside.x[:-1], soft.joined(hard)
     # One more variable: the exposure.
