@@ -16,7 +16,7 @@ PANEL = 0.56
 
 def transfer_of(seed):
     """A transfer of a generated photo to the generated room, with its texture."""
-    photo = luxfer.DemoPhoto(context()).run(width=240, height=160, samples=8, seed=seed)
+    photo = luxfer.DemoPhoto(context()).run(width=360, height=240, samples=8, seed=seed)
     transfer = luxfer.Transfer(context(), photo.image("picture"), luxfer.Scene.demo(context(), "target-room"), "Ceiling")
     transfer.set_strokes(photo.image("strokes"))
     return transfer.run("view", "emission", max_texels=512)

@@ -9,14 +9,16 @@
 //! 1. [`tree`] builds the component tree: the connected regions above every level of brightness, nested in each other.
 //! 2. [`regions`] measures them: size in the photo and on the plane ([`footprint`]), shape, colour, and the mean
 //!    gradient across the contour.
-//! 3. [`painted`] chooses, for each positive stroke, the regions with the sharpest contours that cover it. Without
-//!    positive strokes, [`proposed`] chooses the regions most like lamps and like each other.
+//! 3. [`painted`] chooses, for each positive stroke, the regions with the sharpest contours that cover it, and
+//!    [`leaks`] cuts off bright surfaces that touch them. Without positive strokes, [`proposed`] chooses the regions
+//!    most like lamps and like each other.
 //! 4. [`similar`] adds regions without a stroke that look like the painted ones and lie on the plane.
 //! 5. [`soft`] computes the confidence. It is one half on the contour of each region, which may run between pixels.
 //!
 //! Not modelled: lamps darker than the plane that they light, such as the housing of an uplight; lamps behind a grid.
 
 mod footprint;
+mod leaks;
 mod on_lattice;
 mod painted;
 mod proposed;
@@ -123,10 +125,11 @@ pub fn run(input: &Input, job: Job) -> Result<Segmentation> {
     };
     let painted = match is_proposed {
         true => proposed::find(&search)?,
-        false => brighter_than_around(
-            &search,
-            painted::find(&tree, &regions, &Paint { width, positive: &paint.positive, negatives: &negatives })?,
-        )?,
+        false => {
+            let paint = Paint { width, positive: &paint.positive, negatives: &negatives };
+            let found = brighter_than_around(&search, painted::find(&tree, &regions, &photo, &paint)?)?;
+            leaks::cut_off(&search, found)?
+        }
     };
     let similar = search.run(&painted, job.part(0.8, 0.95))?;
     let found = segmentation(&search, &painted, &similar, &paint, job.part(0.95, 1.0))?;

@@ -1,7 +1,7 @@
 //! Finds the regions under the strokes: for each stroke, the disjoint nodes of the component tree that cover the
 //! stroke and have the sharpest contours.
 
-use super::regions::Regions;
+use super::regions::{self, Brightness, Regions, SOFT};
 use super::tree::Tree;
 use crate::error::Result;
 use crate::image::try_vec;
@@ -28,6 +28,10 @@ const PURITY_POWER: i32 = 4;
 /// Minimum contour gradient of a region, as a share of the highest contour gradient among the regions chosen for the
 /// same stroke. Chosen regions with a lower gradient are fragments and are dropped. [judged on 28 photos]
 const MIN_CONTOUR_GRADIENT: f64 = 0.4;
+/// Of the regions chosen for one stroke, regions with a larger soft share of their contour ([`SOFT`], relative to the
+/// highest contour gradient among them) are dropped, unless all are soft. They are the light of a lamp on the ceiling
+/// beside it, which a stroke painted in a hurry grazes. [convention: a third]
+const MAX_SOFT: f64 = 1.0 / 3.0;
 
 /// The positive strokes as pixels, and the negative strokes as counts per node of the component tree. `width` is the
 /// width of the photo. A pixel under several strokes belongs to the last of them.
@@ -41,13 +45,13 @@ pub struct Paint<'a> {
 
 /// Finds the nodes of the component tree under the positive strokes, in ascending order, without nodes that lie inside
 /// other found nodes.
-pub fn find(tree: &Tree, regions: &Regions, paint: &Paint) -> Result<Vec<u32>> {
+pub fn find(tree: &Tree, regions: &Regions, photo: &Brightness, paint: &Paint) -> Result<Vec<u32>> {
     let mut is_chosen = try_vec(tree.len(), false)?;
     let mut covered = try_vec(tree.len(), 0f64)?;
     for stroke in paint.positive.iter().filter(|s| !s.is_empty()) {
-        for node in of_stroke(tree, regions, paint, stroke, &mut covered) {
-            is_chosen[node as usize] = true;
-        }
+        let mut nodes = of_stroke(tree, regions, paint, stroke, &mut covered);
+        drop_soft(&mut nodes, tree, regions, photo);
+        nodes.into_iter().for_each(|node| is_chosen[node as usize] = true);
     }
     Ok((1..tree.len() as u32).filter(|&n| is_chosen[n as usize] && is_outermost(tree, &is_chosen, n)).collect())
 }
@@ -118,6 +122,19 @@ fn of_stroke(tree: &Tree, regions: &Regions, paint: &Paint, stroke: &[u32], cove
     let sharpest = chosen.iter().map(|&n| regions.contour_gradient(n as usize)).fold(0.0, f64::max);
     chosen.retain(|&n| regions.contour_gradient(n as usize) >= MIN_CONTOUR_GRADIENT * sharpest);
     chosen
+}
+
+/// Drops the nodes of a stroke whose contour is soft ([`MAX_SOFT`]), if others are not.
+fn drop_soft(nodes: &mut Vec<u32>, tree: &Tree, regions: &Regions, photo: &Brightness) {
+    if nodes.len() < 2 {
+        return;
+    }
+    let sharpest = nodes.iter().map(|&n| regions.contour_gradient(n as usize)).fold(0.0, f64::max);
+    let is_sharp = |&node: &u32| regions::soft_share(node, tree, photo, SOFT * sharpest) <= MAX_SOFT;
+    let sharp: Vec<u32> = nodes.iter().copied().filter(is_sharp).collect();
+    if !sharp.is_empty() {
+        *nodes = sharp;
+    }
 }
 
 /// The diagonal of a stroke's bounding box, in pixels.

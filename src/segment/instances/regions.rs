@@ -23,6 +23,9 @@ const LEVELS_PER_L: f32 = 2.55;
 const LEVELS_PER_DOUBLING: f32 = 32.0;
 /// Variance, in square pixels, of a position that is uniformly distributed within a pixel. [convention: exact]
 const PIXEL_VARIANCE: f64 = 1.0 / 12.0;
+/// A contour is soft where the gradient across it is below this share of the contour gradient of sharp lamps.
+/// [bench photos:tune, photos:real]
+pub const SOFT: f64 = 0.2;
 /// The highest brightness level. [convention]
 const MAX_LEVEL: f32 = 1023.0;
 

@@ -3,7 +3,7 @@
 //! meet these criteria are reported as doubtful.
 
 use super::painted::MIN_AREA;
-use super::regions::{self, Brightness, Regions};
+use super::regions::{self, Brightness, Regions, SOFT};
 use super::surroundings::{self, Bounds, Surroundings};
 use super::tree::{Disjoint, Tree};
 use crate::error::Result;
@@ -26,11 +26,10 @@ pub const CHROMA: f64 = 12.0;
 /// lamps under the strokes. The gradient of each lamp is first divided by the lamp's [`sharpness`]. The limit is below
 /// 1 because distant lamps are small and blurred. [judged on 28 photos]
 const CONTOUR: f64 = 0.55;
-/// A contour is soft where the gradient across it is below `SOFT` times the median contour gradient of the lamps under
-/// the strokes. At most the share `MAX_SOFT` of a lamp's contour is soft. The light that a lamp throws on a wall or a
-/// beam has a sharp edge on one side only. In the test photos, at most 0.23 of the contour of lamps is soft, and at
-/// least 0.26 of the contour of such light. [bench photos:tune, photos:real]
-const SOFT: f64 = 0.2;
+/// At most this share of a lamp's contour is soft ([`SOFT`], relative to the median contour gradient of the lamps under
+/// strokes). The light that a lamp throws on a wall or a beam has a sharp edge on one side only. In the test photos, at
+/// most 0.23 of the contour of lamps is soft, and at least 0.26 of the contour of such light. [bench photos:tune,
+/// photos:real]
 const MAX_SOFT: f64 = 0.25;
 /// Minimum contrast between a lamp and the ring of pixels around it, relative to the median contrast of the lamps under
 /// the strokes. The contrast of each lamp is first divided by the lamp's [`sharpness`]. [judged on 28 photos]
@@ -416,7 +415,8 @@ impl Search<'_> {
         try_collect(candidates.into_iter().map(|(node, likeness, _)| (node, likeness)))
     }
 
-    fn model(&self, painted: &[u32]) -> Result<Option<LampLimits>> {
+    /// Derives the limits for lamps from the lamps under the strokes; `None` if nothing surrounds any of them.
+    pub fn model(&self, painted: &[u32]) -> Result<Option<LampLimits>> {
         let Self { tree, regions, photo, .. } = *self;
         let nobody = try_vec(tree.node_of.len(), false)?;
         let (mut rings, mut colours_around) = (Vec::new(), Vec::new());

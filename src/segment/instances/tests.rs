@@ -129,6 +129,42 @@ fn a_lamp_that_the_border_cuts_may_be_of_any_size_and_a_thing_inside_may_not() {
 }
 
 #[test]
+fn a_bright_wall_that_touches_a_painted_lamp_is_cut_off_if_another_painted_lamp_shows_its_size() {
+    let ceiling = ceiling();
+    let mut features = features();
+    // The wall is nearly as bright as the second lamp, and touches its lower edge.
+    let wall = [120, 32, 132, 50];
+    let lab = colour::linear_to_lab(Vec3::splat(0.87)).to_array();
+    for i in (0..WIDTH * HEIGHT).filter(|i| is_in(wall, i % WIDTH, i / WIDTH)) {
+        features.data[i * CHANNELS..][..3].copy_from_slice(&lab);
+    }
+    let second = stroke(true, &[[130.0, 26.0], [150.0, 26.0]]);
+    let first = stroke(true, &[[30.0, 26.0], [50.0, 26.0]]);
+    for (strokes, leaks) in [(vec![second.clone()], true), (vec![second, first], false)] {
+        let mask = segment_in(&features, &strokes, Some(&ceiling)).mask;
+        assert_eq!(mask.pixel(126, 44)[0] > 0.5, leaks, "{} strokes", strokes.len());
+        assert_eq!(mask.pixel(140, 26)[0], 1.0);
+    }
+}
+
+#[test]
+fn a_stroke_that_slips_off_a_lamp_does_not_mark_the_light_on_the_ceiling_beside_it() {
+    let ceiling = ceiling();
+    let mut features = features();
+    // A dark housing above the second lamp, and the lamp's light on the ceiling above the housing.
+    for (x, y) in (80..200).flat_map(|x| (0..20).map(move |y| (x, y))) {
+        let [across, up] = [(x as f32 - 140.0) / 30.0, (15.0 - y as f32) / 10.0];
+        let light = 0.35 + 0.65 * (-across * across - up * up).exp();
+        let grey = if y >= 15 && (118..162).contains(&x) { 0.05 } else { light };
+        let lab = colour::linear_to_lab(Vec3::splat(grey)).to_array();
+        features.data[(y * WIDTH + x) * CHANNELS..][..3].copy_from_slice(&lab);
+    }
+    let slips = stroke(true, &[[125.0, 26.0], [150.0, 26.0], [152.0, 12.0]]);
+    let mask = segment_in(&features, &[slips], Some(&ceiling)).mask;
+    assert_eq!((mask.pixel(140, 26)[0], mask.pixel(150, 12)[0]), (1.0, 0.0));
+}
+
+#[test]
 fn things_of_another_shape_are_no_lamps() {
     let ceiling = ceiling();
     // A bright strip with the area of a lamp, but 30 times as long as wide.
