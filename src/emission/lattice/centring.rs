@@ -33,17 +33,17 @@ impl Bounds {
 }
 
 /// The shift, in unwarped pixels, that centres a lattice in a texture of `size` unwarped pixels. Four shifts are
-/// compared. They move one of these points to the texture's centre: a lamp, the midpoint between two lamps that are one
-/// period apart (for each period), or the midpoint between four lamps around a cell. The shift is chosen for which the
-/// border cuts the fewest lamps; among equal shifts, the shift with the number of lamps nearest to the size of the
-/// texture divided by the size of a lattice cell; then the shift that keeps the lamps farthest from the border.
-/// With more than [`MAX_CELLS`] cells, a lamp moves to the centre without comparison. `None` if the law has no lattice.
+/// compared. They move one of these points to the texture's centre: the centre of a lamp or of the group that repeats,
+/// the midpoint between two of them that are one period apart (for each period), or the midpoint between four of them.
+/// The shift is chosen for which the border cuts the fewest lamps; among equal shifts, the shift with the number of
+/// lamps nearest to the size of the texture divided by the size of a lattice cell; then the shift that keeps the lamps
+/// farthest from the border. With more than [`MAX_CELLS`] cells, the first point moves to the centre without
+/// comparison. `None` if the law has no lattice.
 pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     let [a, b] = law.lattice()?;
-    let motif = motif(exemplar, law);
-    let anchor = motif.first()?.centre();
+    let (anchor, motif) = motif(exemplar, law)?;
     let middles = [DVec2::ZERO, a / 2.0, b / 2.0, (a + b) / 2.0];
-    let shifts = middles.map(|from_lamp| size / 2.0 + from_lamp - anchor);
+    let shifts = middles.map(|from_anchor| size / 2.0 + from_anchor - anchor);
     let inverse = DMat2::from_cols(a, b).inverse();
     if size.element_product() * inverse.determinant().abs() > MAX_CELLS {
         return Some(shifts[0]);
@@ -58,34 +58,38 @@ pub fn shift(exemplar: &Exemplar, law: Law, size: DVec2) -> Option<DVec2> {
     Some(shifts[best])
 }
 
-/// The bounding boxes of the lamps of one lattice cell; the lamp nearest to the exemplar's centre comes first.
+/// The point of a lattice cell that centring moves to the texture's centre, or half a period beside it, and the
+/// bounding boxes of the cell's lamps. The first lamp is the one nearest to the exemplar's centre.
 ///
-/// - Lattice: the boxes of all lamps in the cell that is centred on this first lamp.
-/// - Row: a single box. Along the row, it is as long as the first lamp; across the row, it spans all lamps.
-/// - Repetition of the whole exemplar: a single box around all lamps.
-fn motif(exemplar: &Exemplar, law: Law) -> Vec<Bounds> {
+/// - Lattice: the centre of the first lamp, and all lamps in the cell that is centred on it.
+/// - Row: a single box and its centre. Along the row, it is as long as the first lamp; across the row, it spans all
+///   lamps.
+/// - Repetition of the whole exemplar: the centre of the box around all lamps, and all lamps.
+fn motif(exemplar: &Exemplar, law: Law) -> Option<(DVec2, Vec<Bounds>)> {
     let mut lamps: Vec<Bounds> = exemplar.pieces().map(|(_, lamp)| Bounds::of(lamp)).collect();
     if lamps.is_empty() {
         lamps = exemplar.components.list.iter().map(Bounds::of).collect();
     }
     let middle = DVec2::new(exemplar.width as f64, exemplar.height as f64) / 2.0;
     lamps.sort_by(|p, q| p.centre().distance_squared(middle).total_cmp(&q.centre().distance_squared(middle)));
-    let Some(&first) = lamps.first() else { return lamps };
+    let first = *lamps.first()?;
     let all = lamps.iter().fold(first, |all, lamp| all.with(*lamp));
-    match law {
+    let row = |low, high| {
+        let row = Bounds { low, high };
+        (row.centre(), vec![row])
+    };
+    Some(match law {
         Law::Lattice([a, b]) => {
             let inverse = DMat2::from_cols(a, b).inverse();
             lamps.retain(|lamp| (inverse * (lamp.centre() - first.centre())).round() == DVec2::ZERO);
-            lamps
+            (first.centre(), lamps)
         }
         Law::Row([_, across]) if across.x == 0.0 => {
-            vec![Bounds { low: DVec2::new(first.low.x, all.low.y), high: DVec2::new(first.high.x, all.high.y) }]
+            row(DVec2::new(first.low.x, all.low.y), DVec2::new(first.high.x, all.high.y))
         }
-        Law::Row(_) => {
-            vec![Bounds { low: DVec2::new(all.low.x, first.low.y), high: DVec2::new(all.high.x, first.high.y) }]
-        }
-        _ => vec![all],
-    }
+        Law::Row(_) => row(DVec2::new(all.low.x, first.low.y), DVec2::new(all.high.x, first.high.y)),
+        _ => (all.centre(), lamps),
+    })
 }
 
 /// The lamps at the texture's border after a shift.
@@ -104,7 +108,8 @@ impl Border {
         let mut border = Self { cut: 0, whole: 0, margin: f64::INFINITY };
         for lamp in motif {
             let lamp = Bounds { low: lamp.low + shift, high: lamp.high + shift };
-            // Find the range of lattice coordinates (i, j) for which the lamp, moved by i a + j b, may touch the texture.
+            // Find the range of lattice coordinates (i, j) for which the lamp, moved by i a + j b, may touch the
+            // texture.
             let half = (lamp.high - lamp.low) / 2.0;
             let corners =
                 [-half, DVec2::new(size.x + half.x, -half.y), DVec2::new(-half.x, size.y + half.y), size + half];

@@ -1,6 +1,6 @@
-//! Cuts off what leaks out of painted lamps. Where a lamp touches a bright wall, or bloom joins it with one, the contour
-//! with the highest gradient may run around both. The lamp is then larger than the other lamps under strokes, and a
-//! brighter region inside it equals one of them.
+//! Cuts off what leaks out of painted lamps. Where a lamp touches a bright wall, or bloom joins it with one, the
+//! contour with the highest gradient may run around both. The lamp is then larger than the other lamps under strokes,
+//! and a brighter region inside it equals one of them.
 
 use super::regions::Regions;
 use super::similar::Search;
