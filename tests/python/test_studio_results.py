@@ -6,6 +6,7 @@ import csv
 import importlib.util
 import io
 import json
+import math
 import threading
 import unittest
 import zipfile
@@ -157,16 +158,23 @@ class Results(StudioCase):
         before, mean = seen["lamps"]["list"], seen["lux"]["mean"]
         plain = self.out("csv")
         kind = before[0]["kind"]
-        added = [[kind, 3.0, 2.0], [99, 1.0, 1.0]]  # there is no kind 99
+        place = self.session.light.room.find_surface("Ceiling")
+
+        def on_ceiling(lamp):
+            at = np.subtract(lamp["position"], place.origin)
+            return [float(at @ np.array(axis)) for axis in (place.u_axis, place.v_axis)]
+
+        # The added lamp hangs where it covers no other lamp.
+        spots = [(u / 10, v / 10) for u in range(5, 56) for v in range(5, 36)]
+        spot = max(spots, key=lambda spot: min(math.dist(spot, on_ceiling(lamp)) for lamp in before))
+        added = [[kind, *spot], [99, 1.0, 1.0]]  # there is no kind 99
         self.edit(last, added=added, until="lux")
         after = seen["lamps"]["list"]
         self.assertEqual(after[: len(before)], before)
         self.assertEqual([lamp["added"] for lamp in after[len(before) :]], [0])
         model = max((lamp for lamp in before if lamp["kind"] == kind), key=lambda lamp: lamp["flux"])
-        place = self.session.light.room.find_surface("Ceiling")
-        at = np.subtract(after[-1]["position"], place.origin)
-        self.assertAlmostEqual(float(at @ np.array(place.u_axis)), 3.0, places=4)
-        self.assertAlmostEqual(float(at @ np.array(place.v_axis)), 2.0, places=4)
+        for found, wanted in zip(on_ceiling(after[-1]), spot, strict=True):
+            self.assertAlmostEqual(found, wanted, places=4)
         total = sum(lamp["flux"] for lamp in before)
         self.assertGreater(seen["lux"]["mean"], mean * (1 + 0.5 * model["flux"] / total))
         rows = self.out("csv").decode().splitlines()
