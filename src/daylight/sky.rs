@@ -211,7 +211,7 @@ impl Conditions {
             let (state, lux, _) = from(given);
             return (state, lux);
         }
-        // Look for the irradiances whose illuminances are the given ones, and keep those that come closest. They serve
+        // Find irradiances that give the given illuminances, and keep the closest. They serve
         // only for the state: the illuminances are exactly the given ones.
         let mut irradiances = given.map(|lux| lux / 110.0);
         let mut best = (f64::INFINITY, from(irradiances).0);

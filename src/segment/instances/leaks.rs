@@ -22,9 +22,9 @@ const MIN_CORE: f64 = 0.5;
 /// nearest to the camera are seen best. [convention]
 const MIN_PIXELS: f64 = 0.9;
 
-/// What is cut off has its centre outside the ellipse of the region inside: at this many standard deviations, where the
-/// ellipse with the region's second moments ends. A rim all around, which bloom makes, has its centre inside.
-/// [convention: exact]
+/// The part that is cut off must lie beside the region inside the lamp: its centre is at least this many standard
+/// deviations of the region's pixels from their mean, where the ellipse with their second moments ends. Bloom makes a
+/// rim all around, whose centre lies inside. [convention: exact]
 const ELLIPSE: f64 = 2.0;
 
 /// Replaces each lamp that leaks by the region inside it that equals another lamp. Lamps that the border of the photo
@@ -33,7 +33,8 @@ pub fn cut_off(search: &Search, painted: Vec<u32>) -> Result<Vec<u32>> {
     let Search { tree, regions, .. } = *search;
     let Some(surface) = &regions.surface else { return Ok(painted) };
     let exceeds = |lamp: u32, other: u32| surface.area[lamp as usize] > MIN_EXCESS * surface.area[other as usize];
-    let smaller = |lamp: u32| painted.iter().copied().filter(move |&o| exceeds(lamp, o) && !search.is_cut(o));
+    let whole: Vec<u32> = painted.iter().copied().filter(|&lamp| !search.is_cut(lamp)).collect();
+    let smaller = |lamp: u32| whole.iter().copied().filter(move |&other| exceeds(lamp, other));
     if painted.iter().all(|&lamp| smaller(lamp).next().is_none()) {
         return Ok(painted);
     }
