@@ -4,13 +4,16 @@
         checks that each block is part of a program that a test compiles or runs, or can be run itself
     blocks.py list
         prints the pages that have blocks to run, each with the language of the blocks
-    blocks.py run FOLDER LIBRARY [LANGUAGE...] [PAGE...]
+    blocks.py run FOLDER LIBRARY [--short] [LANGUAGE...] [PAGE...]
         runs the Python and shell blocks page by page; their pictures go into FOLDER
 
 A block consists either of `--8<--` lines only, which name parts of programs, or of Python or shell code. The Python
 blocks of a page form one program, and so do its shell blocks. Python runs in FOLDER/PAGE/, with copies of the photos
 (.jpg) of the page's folder in the guide. Shell runs in a tree of links that looks like the source tree after a build,
 so that it leaves no files in the source tree; `luxfer` is on its path as if the wheel were installed.
+
+A comment `<!-- short run: CODE -->` on a line of its own in a page is Python that only `--short` runs, at its place: it
+leaves out a part of what the page repeats, as tests need one example of it.
 """
 
 from __future__ import annotations
@@ -29,6 +32,7 @@ GUIDE = ROOT / "docs" / "guide"
 #: Programs that tests compile and run (tests/CMakeLists.txt).
 TESTED = re.compile(r"examples_c/\w+\.[ch]|tests/docs/\w+\.(cpp|hpp|c|py)|tests/package/(CMakeLists\.txt|consumer\.(c|cpp)|check\.sh)")
 RUN = {"python": "python", "sh": "sh"}
+SHORT = re.compile(r"^<!-- short run: (.*) -->$", re.M)
 FENCE = re.compile(r"^([ \t]*)(`{3,}|~{3,})([^\n]*)\n(.*?)^\1\2[ \t]*$", re.S | re.M)
 
 
@@ -73,13 +77,16 @@ def check() -> list[str]:
     return problems
 
 
-def run_python(page: Path, folder: Path, environment: dict[str, str]) -> int:
+def run_python(page: Path, short: bool, folder: Path, environment: dict[str, str]) -> int:
     """Runs a page's Python blocks as one program; error messages have the line numbers of the page."""
+    code = [(line + 1, text) for line, language, text in blocks(page) if language == "python" and parts(text) is None]
+    if short:
+        text = page.read_text()
+        code = sorted(code + [(text.count("\n", 0, m.start()) + 1, m[1] + "\n") for m in SHORT.finditer(text)])
     source, at = "", 1
-    for line, language, text in blocks(page):
-        if language == "python" and parts(text) is None:
-            source += "\n" * (line + 1 - at) + text
-            at = line + 1 + text.count("\n")
+    for line, text in code:
+        source += "\n" * (line - at) + text
+        at = line + text.count("\n")
     if not source:
         return 0
     work = folder / page.relative_to(GUIDE).with_suffix("")
@@ -132,7 +139,8 @@ def runnable() -> list[tuple[Path, str]]:
 def run(folder: Path, library: Path, asked: list[str]) -> list[str]:
     environment = {**os.environ, "LUXFER_LIBRARY": str(library), "PYTHONPATH": str(ROOT / "bindings" / "python")}
     languages = [word for word in asked if word in RUN] or list(RUN)
-    names = [word for word in asked if word not in RUN]
+    short = "--short" in asked
+    names = [word for word in asked if word not in RUN and word != "--short"]
     problems, ran = [], set()
     for page, language in runnable():
         name = str(page.relative_to(GUIDE))
@@ -140,7 +148,7 @@ def run(folder: Path, library: Path, asked: list[str]) -> list[str]:
             continue
         ran.add(name)
         began = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        code = run_python(page, folder, environment) if language == "python" else run_sh(page, library, environment)
+        code = run_python(page, short, folder, environment) if language == "python" else run_sh(page, library, environment)
         took = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - began
         if code != 0:
             problems.append(f"{page.relative_to(ROOT)}: its blocks of {language} fail")
