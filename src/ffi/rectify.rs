@@ -404,6 +404,7 @@ pub unsafe extern "C" fn luxfer_rectify_start(
                     photo.image(),
                     &view,
                     mask.image(),
+                    None,
                     &unwarp_params,
                     job.part(0.5, 1.0),
                 )?)),

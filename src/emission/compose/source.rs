@@ -143,11 +143,13 @@ impl TexelSource<'_> {
             return Some(Texel { colour: Vec3::ZERO, share: 0.0, coverage: 0.0 });
         }
         // Read the colour at the corresponding point of the lamp in the photo. The whole design is mapped onto the
-        // inner part of the lamp in the photo, because bloom enlarges that lamp and blurs its rim.
+        // inner part of the lamp in the photo, because bloom enlarges that lamp and blurs its rim. The band of a ring
+        // is mapped onto its middle line, whose place bloom does not change.
         let axes = [design.axis, design.axis.perp()];
         let inner = (fitted.size - RIM * 2.0 * fitted.photo_pixel).max(fitted.size * MIN_INNER) / design.size;
         let half = design.size / 2.0;
-        let local = DVec2::new(at.dot(axes[0]), at.dot(axes[1])).clamp(-half, half) * inner;
+        let local = DVec2::new(at.dot(axes[0]), at.dot(axes[1])).clamp(-half, half);
+        let local = if design.hole == DVec2::ZERO { local * inner } else { design.middle_of_band(local) };
         let p = self.shown_point(component, fitted.centre + axes[0] * local.x + axes[1] * local.y);
         let label = component as u32 + 1;
         let colour = match &self.layer.even {

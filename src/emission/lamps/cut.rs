@@ -39,7 +39,10 @@ fn rectangle(exemplar: &Exemplar, component: usize, kind: usize) -> Option<(Desi
     let (low, high) = lamp.bounds();
     let (centre, size) = ((low + high) / 2.0, high - low);
     let photo_pixel = LocalMap::new(exemplar.to_photo, lamp.centre).photo_pixel();
-    Some((Design { shape: Shape::Rectangle, size, axis: DVec2::X }, Fitted { kind, centre, size, photo_pixel }))
+    Some((
+        Design { shape: Shape::Rectangle, size, axis: DVec2::X, hole: DVec2::ZERO },
+        Fitted { kind, centre, size, photo_pixel },
+    ))
 }
 
 /// Number of pixels in the lamp's bounding box that the photo shows.

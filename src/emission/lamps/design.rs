@@ -1,4 +1,5 @@
-//! The design of a kind of lamps: a rectangle or an ellipse, which is sharp at any resolution.
+//! The design of a kind of lamps: a rectangle or an ellipse, which is sharp at any resolution. Rings and frames have a
+//! hole of the same shape in the middle.
 
 use super::luminaire::Luminaire;
 use crate::geometry::polygon;
@@ -35,6 +36,8 @@ pub struct Design {
     pub size: DVec2,
     /// Direction of the first side, a unit vector.
     pub axis: DVec2,
+    /// Sides of the dark hole in the middle, along and across `axis`; 0 without a hole.
+    pub hole: DVec2,
 }
 
 impl Design {
@@ -52,8 +55,28 @@ impl Design {
         }
     }
 
+    /// Area without the hole.
     pub fn area(&self) -> f64 {
-        self.size.element_product() * if self.shape == Shape::Rectangle { 1.0 } else { PI / 4.0 }
+        self.area_within(self.size) - self.area_within(self.hole)
+    }
+
+    /// Area of the design's shape with other sides.
+    fn area_within(&self, sides: DVec2) -> f64 {
+        sides.element_product() * if self.shape == Shape::Rectangle { 1.0 } else { PI / 4.0 }
+    }
+
+    /// The design with a hole that leaves a band of the given width; without a hole if the band fills the shape.
+    pub fn with_band(self, width: f64) -> Self {
+        let hole = self.size - 2.0 * width;
+        Self { hole: if hole.min_element() > 0.0 { hole } else { DVec2::ZERO }, ..self }
+    }
+
+    /// The point on the middle line of the band around the hole, in the direction of `p` from the centre. `p` and the
+    /// result are relative to the centre, along and across the axis.
+    pub fn middle_of_band(&self, p: DVec2) -> DVec2 {
+        let u = 2.0 * p / self.size;
+        let length = if self.shape == Shape::Rectangle { u.abs().max_element() } else { u.length() };
+        u / length.max(f64::MIN_POSITIVE) * (self.size + self.hole) / 4.0
     }
 
     /// Sets the centre, size, orientation, area and outline of a luminaire from this design.
@@ -82,7 +105,12 @@ impl Design {
     /// centre, and `side` the length of its sides.
     pub fn coverage(&self, p: DVec2, side: f64) -> f64 {
         let q = DVec2::new(p.dot(self.axis), p.dot(self.axis.perp()));
-        let half = self.size / 2.0;
+        let hole = if self.hole == DVec2::ZERO { 0.0 } else { self.coverage_within(self.hole / 2.0, q, side) };
+        (self.coverage_within(self.size / 2.0, q, side) - hole).max(0.0)
+    }
+
+    /// The coverage by the design's shape with other half sides. `q` is given along and across the axis.
+    fn coverage_within(&self, half: DVec2, q: DVec2, side: f64) -> f64 {
         match self.shape {
             // Exact if the rectangle's axis is parallel to x or y. Otherwise an approximation: the square is rotated
             // about its centre until its sides are parallel to the sides of the rectangle.
@@ -105,8 +133,8 @@ impl Design {
         }
     }
 
-    /// Agreement of a polygon of the given area with the design around `centre`: the area of their intersection divided
-    /// by the area of their union.
+    /// Agreement of a polygon of the given area with the outline of the design around `centre`: the area of their
+    /// intersection divided by the area of their union.
     pub fn agreement(&self, polygon: &[DVec2], area: f64, centre: DVec2) -> f64 {
         let own = self.outline(centre);
         let common = own.iter().zip(own.iter().cycle().skip(1)).fold(polygon.to_vec(), |clipped, (p, q)| {
@@ -114,7 +142,7 @@ impl Design {
             polygon::clip(&clipped, normal, normal.dot(*p))
         });
         let common = polygon::area(&common).abs();
-        common / (area + self.area() - common).max(f64::MIN_POSITIVE)
+        common / (area + self.area_within(self.size) - common).max(f64::MIN_POSITIVE)
     }
 }
 
@@ -124,13 +152,14 @@ mod tests {
 
     #[test]
     fn coverage_adds_up_to_the_area() {
-        for shape in [Shape::Rectangle, Shape::Ellipse] {
-            let design = Design { shape, size: DVec2::new(9.3, 5.7), axis: DVec2::X };
+        let holes = [DVec2::ZERO, DVec2::new(6.1, 2.5)];
+        for (shape, hole) in [Shape::Rectangle, Shape::Ellipse].into_iter().flat_map(|s| holes.map(|hole| (s, hole))) {
+            let design = Design { shape, size: DVec2::new(9.3, 5.7), axis: DVec2::X, hole };
             let sum: f64 = (0..40 * 40)
                 .map(|i| DVec2::new(f64::from(i % 40), f64::from(i / 40)) * 0.5 - DVec2::new(10.13, 9.9))
                 .map(|p| design.coverage(p, 0.5) * 0.25)
                 .sum();
-            assert!((sum / design.area() - 1.0).abs() < 0.01, "{shape:?}: {sum}");
+            assert!((sum / design.area() - 1.0).abs() < 0.01, "{shape:?} with a hole of {hole}: {sum}");
         }
     }
 }

@@ -9,10 +9,11 @@
 //! 3. Bloom adds a constant number of photo pixels to every side. Where unwarping magnifies more, a side therefore
 //!    becomes longer in unwarped pixels. This growth is estimated from the lamps and subtracted.
 //!
-//! The resulting outline is a geometric shape, so it is sharp at any resolution. Lamps that are neither rectangles nor
-//! ellipses keep their own outline.
+//! The resulting outline is a geometric shape, so it is sharp at any resolution. If most lamps of a kind have a dark
+//! hole in the middle, they are rings or frames: the width of the band around the hole is estimated like a side. Lamps
+//! that are neither rectangles nor ellipses keep their own outline.
 //!
-//! Not modelled: ring-shaped lamps; lamps of equal shape but different orientation.
+//! Not modelled: lamps of equal shape but different orientation; holes that are not in the middle.
 
 use super::bloom::common_side;
 use super::design::{Design, Shape};
@@ -105,7 +106,7 @@ impl Designs {
 
 /// The disc with the given diameter.
 fn disc(diameter: f64) -> Design {
-    Design { shape: Shape::Ellipse, size: DVec2::splat(diameter), axis: DVec2::X }
+    Design { shape: Shape::Ellipse, size: DVec2::splat(diameter), axis: DVec2::X, hole: DVec2::ZERO }
 }
 
 /// The lamps by which the design of their kind is judged: the lamps that the photo shows completely, or else all lamps.
@@ -124,7 +125,7 @@ pub fn fit(members: &[Member]) -> Option<Design> {
     let design = [Shape::Rectangle, Shape::Ellipse].map(|shape| {
         let sides = judges.iter().map(|m| (m.sides(axis, shape), m.blur_along(axis)));
         let side = |k: usize| common_side(sides.clone().map(|(size, blur)| (size[k], blur[k])));
-        let design = Design { shape, size: DVec2::new(side(0)?, side(1)?), axis };
+        let design = Design { shape, size: DVec2::new(side(0)?, side(1)?), axis, hole: DVec2::ZERO };
         let agreement = mean(&|m| {
             let own = Design { size: m.sides(axis, shape), ..design };
             own.agreement(&m.outline, m.area, m.centre)
@@ -138,7 +139,24 @@ pub fn fit(members: &[Member]) -> Option<Design> {
     if agreement < MIN_AGREEMENT {
         return None;
     }
-    Some(discs::disc(&judges, is_round.then_some(aspect)).map_or(design, disc))
+    let design = discs::disc(&judges, is_round.then_some(aspect)).map_or(design, disc);
+    Some(band(&judges, &design).map_or(design, |width| design.with_band(width)))
+}
+
+/// The width of the band around the holes of rings and frames; `None` if lamps with no more than half of the photo's
+/// pixels have a hole. Blur fills the holes of small lamps.
+fn band(judges: &[&Member], design: &Design) -> Option<f64> {
+    let with_hole = || judges.iter().filter(|m| m.hole_share > 0.0);
+    let weight = |m: &&Member| m.weight;
+    if with_hole().copied().map(|m| m.weight).sum::<f64>() <= 0.5 * judges.iter().map(weight).sum::<f64>() {
+        return None;
+    }
+    // A band of width w around a hole that has the share q of an area a b: (a - 2 w) (b - 2 w) = q a b.
+    let width = |m: &Member| {
+        let [a, b] = m.sides(design.axis, design.shape).to_array();
+        (a + b - ((a - b) * (a - b) + 4.0 * m.hole_share * a * b).sqrt()) / 4.0
+    };
+    common_side(with_hole().map(|m| (width(m), m.blur_along(design.axis).element_sum() / 2.0)))
 }
 
 /// The common axis of lamps: the mean angle of their enclosing rectangles, modulo a right angle and weighted by photo

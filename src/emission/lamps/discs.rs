@@ -162,7 +162,8 @@ mod tests {
     /// photo pixels to steps in unwarped pixels.
     fn oval(component: usize, (size, angle): (DVec2, f64), weight: f64, inverse_map: DMat2) -> Member {
         let centre = DVec2::new(100.0, 0.0);
-        let outline = Design { shape: Shape::Ellipse, size, axis: DVec2::from_angle(angle) }.outline(centre);
+        let outline =
+            Design { shape: Shape::Ellipse, size, axis: DVec2::from_angle(angle), hole: DVec2::ZERO }.outline(centre);
         let (area, centre, moments) = polygon_moments(&outline).unwrap();
         Member {
             component,
@@ -175,6 +176,7 @@ mod tests {
             blur: DVec2::new(inverse_map.row(0).length(), inverse_map.row(1).length()),
             inverse_map,
             is_clear: true,
+            hole_share: 0.0,
         }
     }
 

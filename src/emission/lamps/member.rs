@@ -9,7 +9,7 @@ use crate::emission::exemplar::roles::Role;
 use crate::geometry::polygon;
 use crate::maths;
 use glam::{DMat2, DVec2};
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Two axes count as parallel if the angle between them is at most this, in radians. [judged on 20 photos]
 pub const MAX_ALIGNED_ANGLE: f64 = 0.07;
@@ -17,6 +17,14 @@ pub const MAX_ALIGNED_ANGLE: f64 = 0.07;
 /// the middle part of the width, and the width is a mean over the middle part of the length. The middle part has this
 /// share of the whole. [judged on 20 photos]
 const MIDDLE_SHARE: f64 = 0.6;
+
+/// Minimum share of the area inside the outline of a ring or a frame that is dark. [convention]
+const MIN_HOLE: f64 = 0.05;
+/// The darkness of a lamp is a hole in its middle if this share of the points at which a hole would be dark are dark,
+/// and of the points at which the band around it would shine do shine. [convention]
+const MIN_AS_HOLE: f64 = 0.9;
+/// Number of directions in which these points lie. [rounding]
+const DIRECTIONS: usize = 16;
 
 /// A lamp of a kind, with its outline and the moments of the area inside the outline. Lengths are in unwarped pixels.
 pub struct Member {
@@ -37,12 +45,16 @@ pub struct Member {
     pub inverse_map: DMat2,
     /// Whether the photo shows the lamp completely, away from the border.
     pub is_clear: bool,
+    /// Share of the area inside the outline that a dark hole in the middle of the lamp takes; 0 without such a hole.
+    pub hole_share: f64,
 }
 
 impl Member {
     pub fn new(lamp: &MeasuredLamp, exemplar: &Exemplar, outlines: &[Luminaire]) -> Option<Self> {
         let outline = &outlines[lamp.component].outline;
         let (area, centre, moments) = polygon_moments(outline)?;
+        let dark = 1.0 - outlines[lamp.component].area / area;
+        let is_hole = dark >= MIN_HOLE && is_dark_in_the_middle(exemplar, lamp.component, centre, moments, dark);
         Some(Self {
             component: lamp.component,
             angle: rectangle_angle(outline),
@@ -54,6 +66,7 @@ impl Member {
             blur: lamp.blur,
             inverse_map: LocalMap::new(exemplar.to_photo, centre).inverse(),
             is_clear: exemplar.roles[lamp.component] == Role::Whole,
+            hole_share: if is_hole { dark } else { 0.0 },
         })
     }
 
@@ -88,6 +101,29 @@ impl Member {
         let along = |a: DVec2| (a.abs() * self.blur).length();
         DVec2::new(along(axis), along(axis.perp()))
     }
+}
+
+/// Whether the dark share of a lamp's area is a hole in its middle: dark half way to the rim of such a hole, and light
+/// in the middle of the band around it. An ellipse with the lamp's moments stands for its shape.
+fn is_dark_in_the_middle(exemplar: &Exemplar, component: usize, centre: DVec2, moments: DMat2, dark: f64) -> bool {
+    let [[short, x], [long, y]] = principal(moments);
+    let axis = DVec2::new(x, y);
+    let hole = dark.sqrt();
+    let shines = |angle: f64, radius: f64| {
+        let p = maths::direction_at(angle) * 2.0 * radius;
+        let at = centre + axis * p.x * long + axis.perp() * p.y * short;
+        let [x, y] = at.to_array().map(|v| v.floor());
+        x >= 0.0
+            && y >= 0.0
+            && x < exemplar.width as f64
+            && y < exemplar.height as f64
+            && exemplar.components.labels[y as usize * exemplar.width + x as usize] == component as u32 + 1
+    };
+    let as_hole = (0..DIRECTIONS).map(|k| {
+        let angle = 2.0 * PI * k as f64 / DIRECTIONS as f64;
+        usize::from(!shines(angle, 0.5 * hole)) + usize::from(shines(angle, 0.5 * (1.0 + hole)))
+    });
+    as_hole.sum::<usize>() as f64 >= MIN_AS_HOLE * (2 * DIRECTIONS) as f64
 }
 
 /// Returns `[[short, x], [long, y]]`: the standard deviations along the short and the long principal axis, and the
@@ -138,7 +174,12 @@ mod tests {
 
     #[test]
     fn moments_of_polygons_are_exact() {
-        let design = Design { shape: Shape::Rectangle, size: DVec2::new(6.0, 2.0), axis: DVec2::from_angle(0.4) };
+        let design = Design {
+            shape: Shape::Rectangle,
+            size: DVec2::new(6.0, 2.0),
+            axis: DVec2::from_angle(0.4),
+            hole: DVec2::ZERO,
+        };
         let (area, centre, moments) = polygon_moments(&design.outline(DVec2::new(30.0, -7.0))).unwrap();
         assert!((area - 12.0).abs() < 1e-9 && (centre - DVec2::new(30.0, -7.0)).length() < 1e-9);
         let along = design.axis.dot(moments * design.axis);

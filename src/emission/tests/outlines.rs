@@ -216,3 +216,57 @@ fn a_copied_part_shows_clean_lamps_where_the_photo_is_ragged() {
     }
     assert!(ragged.iter().any(|lamp| (lamp.area / ragged[0].area - 1.0).abs() > 0.03));
 }
+
+/// Measures an exemplar of 240 x 180 pixels with lamps on a lattice of 60 pixels; `is_lit` describes a lamp around the
+/// origin. The ceiling has half of the lamps' brightness. Returns the lamps of a texture of twice the resolution, and
+/// its brightness at a place relative to the centre of a lamp, in unwarped pixels.
+fn on_a_dim_ceiling(is_lit: impl Fn(DVec2) -> bool) -> (Vec<Luminaire>, impl Fn(DVec2) -> f32) {
+    let centred = |v: f64| v.rem_euclid(60.0) - 30.0;
+    let mut exemplar = Design::new(240, 180, |x, y| is_lit(DVec2::new(centred(x), centred(y))));
+    for (pixel, light) in exemplar.unwarped.data.chunks_exact_mut(3).zip(&exemplar.light.data) {
+        pixel.fill(0.5 + 0.5 * light);
+    }
+    let to_photo = Homography(glam::DMat3::IDENTITY);
+    let input = Input { photo: Some((&exemplar.unwarped, to_photo.into())), ..exemplar.input() };
+    let params = Params { width: 800, height: 640, scale: 0.5, ..Params::default() };
+    let result = run(&input, &params, Monitor::default().job()).unwrap();
+    assert!(matches!(result.law, Law::Lattice(_)), "{:?}", result.law);
+    let first = result.luminaires.iter().find(|lamp| lamp.kind > 0).unwrap().centre;
+    let texture = result.texture;
+    let brightness = move |from_centre: DVec2| {
+        let [x, y] = (first + from_centre * 2.0).to_array().map(|v| v as usize);
+        texture.rgb(x, y).x
+    };
+    (result.luminaires, brightness)
+}
+
+#[test]
+fn rings_and_frames_keep_their_dark_middle() {
+    let disc = |p: DVec2| std::f64::consts::PI * p.x * p.x;
+    let square = |p: DVec2| 4.0 * p.x * p.x;
+    for (norm, area) in [
+        ((|p: DVec2| p.length()) as fn(DVec2) -> f64, disc as fn(DVec2) -> f64),
+        (|p: DVec2| p.abs().max_element(), square),
+    ] {
+        let (lamps, brightness) = on_a_dim_ceiling(|p| (11.0..18.0).contains(&norm(p)));
+        let true_area = 4.0 * (area(DVec2::splat(18.0)) - area(DVec2::splat(11.0)));
+        for lamp in lamps.iter().filter(|lamp| lamp.kind > 0) {
+            assert!((lamp.area / true_area - 1.0).abs() < 0.06, "{} instead of {true_area}", lamp.area);
+            assert!((lamp.size / 72.0 - 1.0).abs().max_element() < 0.03, "{}", lamp.size);
+        }
+        let along = |r: f64| [DVec2::X, DVec2::Y, DVec2::NEG_X].map(|axis| brightness(axis * r));
+        assert_eq!([along(0.0), along(6.0), along(22.0)], [[0.0; 3]; 3]);
+        along(14.5).into_iter().for_each(|b| assert!(b > 0.95, "{b}"));
+    }
+}
+
+#[test]
+fn a_dark_spot_beside_the_middle_makes_no_ring() {
+    let spot = DVec2::new(9.0, 0.0);
+    let (lamps, brightness) = on_a_dim_ceiling(|p| p.length() < 18.0 && p.distance(spot) > 6.0);
+    let disc = 4.0 * std::f64::consts::PI * 18.0 * 18.0;
+    for lamp in lamps.iter().filter(|lamp| lamp.kind > 0) {
+        assert!((lamp.area / disc - 1.0).abs() < 0.06, "{}", lamp.area);
+    }
+    assert!(brightness(DVec2::ZERO) > 0.4);
+}
