@@ -818,9 +818,9 @@ typedef struct luxfer_emission_params {
      */
     luxfer_emission_law law;
     /**
-     * 1, the default: all lamps of one kind (of about equal size and shape) that resemble rectangles or ellipses are
-     * drawn with one size and one outline, which stays sharp at any resolution. They lie exactly on their lattice.
-     * This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
+     * 1, the default: all lamps of one kind (of about equal size and shape) that resemble rectangles or ellipses, or
+     * frames or rings, are drawn with one size and one outline, which stays sharp at any resolution. They lie exactly
+     * on their lattice. This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
      */
     uint32_t clean_lamps;
     /**
@@ -905,7 +905,7 @@ typedef struct luxfer_emission_report {
 typedef struct luxfer_luminaire {
     /** sizeof(luxfer_luminaire), set by the function that fills the struct. */
     uint32_t struct_size;
-    /** Number of corners of the outline. */
+    /** Number of corners of the outer outline. */
     uint32_t corners;
     /** Centre in texels, x to the right and y down; the texture's top-left corner is (0, 0). */
     double centre[2];
@@ -913,7 +913,10 @@ typedef struct luxfer_luminaire {
     double size[2];
     /** Angle of the long axis, measured from x (right) towards y (down), in radians, in (-pi/2, pi/2]. */
     double orientation;
-    /** Area in square texels. A texel at the edge of the lamp counts with the share that the lamp covers. */
+    /**
+     * Area in square texels, without the hole of a ring. A texel at the edge of the lamp counts with the share that
+     * the lamp covers.
+     */
     double area;
     /** This lamp's share of the luminous flux of all lamps of the texture, in [0, 1]. */
     double flux_share;

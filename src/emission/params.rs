@@ -92,7 +92,8 @@ pub struct Params {
     /// Gives every lamp one uniform colour: its mean colour.
     pub even_lamps: bool,
     /// Gives all lamps of a kind one size and one outline that is exact at any resolution, and places them exactly on
-    /// their lattice. Needs the photo and `whole_lamps`; otherwise each lamp keeps the outline of the light mask.
+    /// their lattice. Rings and frames keep the hole in their middle. Needs the photo and `whole_lamps`; otherwise each
+    /// lamp keeps the outline of the light mask.
     pub clean_lamps: bool,
     /// Makes a tileable texture: a lamp that leaves it on one side re-enters on the opposite side. Needs
     /// `whole_lamps`. A lattice is stretched, by less than half a period over the whole texture, so that a whole

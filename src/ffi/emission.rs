@@ -106,9 +106,9 @@ pub struct luxfer_emission_params {
     /// The law: the rule by which the texture continues the lights of the exemplar, a LUXFER_LAW_ value other than
     /// LUXFER_LAW_COPY; default LUXFER_LAW_BEST.
     pub law: luxfer_emission_law,
-    /// 1, the default: all lamps of one kind (of about equal size and shape) that resemble rectangles or ellipses are
-    /// drawn with one size and one outline, which stays sharp at any resolution. They lie exactly on their lattice.
-    /// This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
+    /// 1, the default: all lamps of one kind (of about equal size and shape) that resemble rectangles or ellipses, or
+    /// frames or rings, are drawn with one size and one outline, which stays sharp at any resolution. They lie exactly
+    /// on their lattice. This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives.
     pub clean_lamps: u32,
     /// Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
     /// magnifies distant parts of the plane more than near parts. The magnification of a pixel is its length in the
@@ -247,7 +247,7 @@ versioned!(luxfer_emission_report, [56], {
 pub struct luxfer_luminaire {
     /// sizeof(luxfer_luminaire), set by the function that fills the struct.
     pub struct_size: u32,
-    /// Number of corners of the outline.
+    /// Number of corners of the outer outline.
     pub corners: u32,
     /// Centre in texels, x to the right and y down; the texture's top-left corner is (0, 0).
     pub centre: [f64; 2],
@@ -255,7 +255,8 @@ pub struct luxfer_luminaire {
     pub size: [f64; 2],
     /// Angle of the long axis, measured from x (right) towards y (down), in radians, in (-pi/2, pi/2].
     pub orientation: f64,
-    /// Area in square texels. A texel at the edge of the lamp counts with the share that the lamp covers.
+    /// Area in square texels, without the hole of a ring. A texel at the edge of the lamp counts with the share that
+    /// the lamp covers.
     pub area: f64,
     /// This lamp's share of the luminous flux of all lamps of the texture, in [0, 1].
     pub flux_share: f64,

@@ -1898,8 +1898,9 @@ class EmissionParams(TypedDict, total=False):
     EmissionLaw.COPY; default EmissionLaw.BEST."""
     clean_lamps: int
     """1, the default: all lamps of one kind (of about equal size and shape) that resemble rectangles or
-    ellipses are drawn with one size and one outline, which stays sharp at any resolution. They lie exactly on
-    their lattice. This needs the photo and whole_lamps. 0: each lamp has the outline that the mask gives."""
+    ellipses, or frames or rings, are drawn with one size and one outline, which stays sharp at any resolution.
+    They lie exactly on their lattice. This needs the photo and whole_lamps. 0: each lamp has the outline that
+    the mask gives."""
     max_magnification: float
     """Maximum relative magnification of the exemplar's pixels, in [1, 1e6]; 0, the default: no limit. Unwarping
     magnifies distant parts of the plane more than near parts. The magnification of a pixel is its length in the
@@ -1959,7 +1960,7 @@ class Luminaire:
     """A luminaire: one lamp of the texture."""
 
     corners: int
-    """Number of corners of the outline."""
+    """Number of corners of the outer outline."""
     centre: tuple[float, float]
     """Centre in texels, x to the right and y down; the texture's top-left corner is (0, 0)."""
     size: tuple[float, float]
@@ -1967,7 +1968,8 @@ class Luminaire:
     orientation: float
     """Angle of the long axis, measured from x (right) towards y (down), in radians, in (-pi/2, pi/2]."""
     area: float
-    """Area in square texels. A texel at the edge of the lamp counts with the share that the lamp covers."""
+    """Area in square texels, without the hole of a ring. A texel at the edge of the lamp counts with the share
+    that the lamp covers."""
     flux_share: float
     """This lamp's share of the luminous flux of all lamps of the texture, in [0, 1]."""
     colour: tuple[float, float, float]

@@ -12,13 +12,14 @@ pub struct Luminaire {
     /// Angle, from x towards y, of the axis along which the points of the lamp have the largest variance. In radians,
     /// in (-π/2, π/2].
     pub orientation: f64,
-    /// Area in texels. A texel at the lamp's edge counts only with the share that light covers.
+    /// Area in texels, without the hole of a ring. A texel at the lamp's edge counts only with the share that light
+    /// covers.
     pub area: f64,
     /// Mean linear RGB of the lamp's texels.
     pub colour: Vec3,
     /// Share of the luminous flux of all lamps in the texture, in `[0, 1]`.
     pub flux_share: f64,
-    /// Corners of the outline in texels, in the order from x towards y. A texel centred on a point of the outline
+    /// Corners of the outer outline in texels, in the order from x towards y. A texel centred on a point of the outline
     /// would be half covered by light.
     ///
     /// Accuracy: let u be the side of a texel or of an unwarped pixel, whichever is larger. The sides of the outline
