@@ -218,7 +218,7 @@ fn ceilings_unwarp_to_their_true_shape() {
         .unwrap();
         let view = rectify::find_view(&photo, &Params::default(), monitor.job()).unwrap();
         let start = Instant::now();
-        let flat = rectify::unwarp(&photo, &view, &mask, None, &UnwarpParams::default(), monitor.job()).unwrap();
+        let flat = rectify::unwarp(&photo, &view, &mask, &UnwarpParams::default(), monitor.job()).unwrap();
         let ms = start.elapsed().as_secs_f64() * 1e3;
         let corner = flat.corners.map(on_ceiling);
         let (across, down) = (corner[1] - corner[0], corner[3] - corner[0]);

@@ -78,7 +78,7 @@ fn errors(view: &View, truth: &Perspective, photo: &Image) -> (f64, f64) {
     let off = |axis: DVec3| axes.iter().map(|a| a.dot(axis).abs().min(1.0).acos()).fold(9.0, f64::min);
     let degrees = (0..3).map(|k| off(truth.axes.col(k)).to_degrees()).fold(0.0, f64::max);
     let horizontal = UnwarpParams { axes: Some([0, 2]), ..UnwarpParams::default() };
-    let flat = rectify::unwarp(photo, view, &mask(truth), None, &horizontal, Monitor::default().job()).unwrap();
+    let flat = rectify::unwarp(photo, view, &mask(truth), &horizontal, Monitor::default().job()).unwrap();
     let corner = flat.corners.map(|c| on_ceiling(truth, c).unwrap());
     let (across, down) = (corner[1] - corner[0], corner[3] - corner[0]);
     let (w, h) = (flat.image.width as f64, flat.image.height as f64);

@@ -404,7 +404,6 @@ pub unsafe extern "C" fn luxfer_rectify_start(
                     photo.image(),
                     &view,
                     mask.image(),
-                    None,
                     &unwarp_params,
                     job.part(0.5, 1.0),
                 )?)),

@@ -12,9 +12,6 @@ const GRID: usize = 96;
 /// Cost of a cell outside the mask relative to the gain of a cell inside it. The cost is low because later stages
 /// ignore holes, whereas a lamp at the rim is lost if the rim is cut off. [bench emission:real]
 const HOLE: f64 = 0.25;
-/// Gain of a cell that shows a lamp, relative to another cell of the mask: what the photo shows of a lamp at its border
-/// is worth the holes beside it. [bench photos]
-const LAMP: f64 = 8.0;
 
 /// A rectangle in plane coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,15 +24,9 @@ pub struct Rectangle {
 }
 
 /// Finds the rectangle with the highest score: the number of its cells that the mask marks and whose magnification is
-/// allowed, those with lamps counted `LAMP` times, minus `HOLE` times the number of its other cells.
-/// `max_magnification` is relative to the best-resolved part of the plane.
-pub fn largest(
-    plane: &Plane,
-    mask: &Image,
-    lamps: Option<&Image>,
-    pixels: &[DVec2],
-    max_magnification: f64,
-) -> Result<Rectangle> {
+/// allowed, minus `HOLE` times the number of its other cells. `max_magnification` is relative to the best-resolved part
+/// of the plane.
+pub fn largest(plane: &Plane, mask: &Image, pixels: &[DVec2], max_magnification: f64) -> Result<Rectangle> {
     // Keep the pixels on the camera's side of the horizon, each with the size of the square that it covers on the
     // plane.
     let mut seen = try_collect(pixels.iter().filter_map(|&p| plane.meet(p).map(|q| (plane.pixel_side(p), q))))?;
@@ -65,9 +56,7 @@ pub fn largest(
             let centre = corner(0.5, 0.5);
             let photo = lens.shown(centre.truncate() / centre.z);
             let shows = in_front && marks(mask, photo) && plane.pixel_side(photo) <= max_pixel_side;
-            *gain = if shows && lamps.is_some_and(|lamps| marks(lamps, photo)) {
-                LAMP
-            } else if shows {
+            *gain = if shows {
                 1.0
             } else if in_front {
                 -HOLE

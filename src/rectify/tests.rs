@@ -124,7 +124,7 @@ fn the_files_focal_length_decides_where_lines_do_not() {
     let (photo, lines) = (ceiling(&ahead), room(&ahead, [20, 20, 20], 0.0, 3));
     let unwarped = |params: &Params| {
         let view = view_of(&lines, params).unwrap();
-        let flat = unwarp(&photo, &view, &mask, None, &UnwarpParams::default(), Monitor::default().job()).unwrap();
+        let flat = unwarp(&photo, &view, &mask, &UnwarpParams::default(), Monitor::default().job()).unwrap();
         (view.perspective.focal, view.perspective.focal_source, flat.aspect_confidence)
     };
     let (focal, source, confidence) = unwarped(&Params::default());
@@ -329,7 +329,7 @@ fn a_lamp_grid_unwarps_to_right_angles_true_aspect_and_nothing_mirrored() {
     // Use exact segments: this test concerns the unwarping alone, not the line detection.
     let view = view_of(&room(&truth, [30, 30, 30], 0.0, 4), &Params::default()).unwrap();
     assert!((view.perspective.focal / 560.0 - 1.0).abs() < 0.02, "{}", view.perspective.focal);
-    let flat = unwarp(&photo, &view, &mask, None, &UnwarpParams::default(), monitor.job()).unwrap();
+    let flat = unwarp(&photo, &view, &mask, &UnwarpParams::default(), monitor.job()).unwrap();
     // Compare the sides of the rectangle in true units. The plane's distance is 1, so the pixel size is known too.
     let corner = flat.corners.map(|c| on_ceiling(&truth, c));
     let (across, down) = (corner[1] - corner[0], corner[3] - corner[0]);
@@ -378,7 +378,7 @@ fn expected_corner_errors_hold_over_noisy_lines() {
             // Repeat each segment five times: the reported errors assume five segments per independent observation.
             let segments = room(&truth, [14, 14, 14], 1.0, seed).repeat(5);
             let view = view_of(&segments, &Params { focal, seed, ..Params::default() }).unwrap();
-            let flat = unwarp(&photo, &view, &mask, None, &params, Monitor::default().job()).unwrap();
+            let flat = unwarp(&photo, &view, &mask, &params, Monitor::default().job()).unwrap();
             let (w, h) = (flat.image.width as f64, flat.image.height as f64);
             let found = [DVec2::ZERO, DVec2::new(w, 0.0), DVec2::new(w, h), DVec2::new(0.0, h)];
             let (found, exact) =
@@ -439,7 +439,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
     let run = |threads: usize| {
         Pool::new(threads).unwrap().run(|| {
             let view = find_view(&photo, &Params::default(), monitor.job()).unwrap();
-            unwarp(&photo, &view, &mask, None, &UnwarpParams::default(), monitor.job()).unwrap()
+            unwarp(&photo, &view, &mask, &UnwarpParams::default(), monitor.job()).unwrap()
         })
     };
     let (a, b) = (run(1), run(3));
@@ -486,7 +486,7 @@ fn planes_that_cannot_be_unwarped_say_why() {
         view_of(&room(&truth, [20, 20, 20], 0.0, 3), &Params { focal: Some(700.0), ..Params::default() }).unwrap();
     let photo = Image::from_fn(SIZE.0, SIZE.1, |_, _| [0.5f32; 3]).unwrap();
     let mask = |f: &dyn Fn(usize, usize) -> bool| Image::from_fn(SIZE.0, SIZE.1, |x, y| [f32::from(f(x, y))]).unwrap();
-    let run = |mask: &Image, params: UnwarpParams| unwarp(&photo, &view, mask, None, &params, Monitor::default().job());
+    let run = |mask: &Image, params: UnwarpParams| unwarp(&photo, &view, mask, &params, Monitor::default().job());
     let horizontal = UnwarpParams { axes: Some([0, 2]), ..UnwarpParams::default() };
     let empty = run(&mask(&|_, _| false), UnwarpParams::default()).unwrap_err();
     assert!(empty.kind == ErrorKind::Degenerate && empty.message.contains("mask is empty"));

@@ -13,24 +13,13 @@ use crate::job::Job;
 use crate::maths;
 use glam::{DMat3, DVec2, DVec3};
 
-/// Unwarps the plane that `mask` marks. `lamps` is a mask of the lamps, if they are known: they should not be cut.
-pub fn unwarp(
-    photo: &Image,
-    view: &View,
-    mask: &Image,
-    lamps: Option<&Image>,
-    params: &UnwarpParams,
-    job: Job,
-) -> Result<Unwarped> {
+pub fn unwarp(photo: &Image, view: &View, mask: &Image, params: &UnwarpParams, job: Job) -> Result<Unwarped> {
     photo.check_same_size("photo", mask, "mask")?;
-    if let Some(lamps) = lamps {
-        photo.check_same_size("photo", lamps, "mask of lamps")?;
-    }
     params.check()?;
     let pixels = marked_pixels(mask)?;
     let plane = choose(view, mask, &pixels, params.axes)?;
     job.check()?;
-    let rectangle = quad::largest(&plane, mask, lamps, &pixels, params.max_magnification)?;
+    let rectangle = quad::largest(&plane, mask, &pixels, params.max_magnification)?;
     job.check()?;
     job.report(0.1);
 

@@ -175,8 +175,7 @@ impl Transfer {
         let laid_out = || layout?.axes_along(&view.perspective, &plane.mask);
         let axes = self.params.unwarp.axes.or_else(laid_out);
         let params = rectify::UnwarpParams { axes, ..self.params.unwarp.clone() };
-        let lamps = self.results.lights.as_ref().map(|lights| &lights.mask);
-        let unwarped = rectify::unwarp(photo, view, &plane.mask, lamps, &params, job)?;
+        let unwarped = rectify::unwarp(photo, view, &plane.mask, &params, job)?;
         self.results.unwarped = Some(Arc::new(unwarped));
         Ok(())
     }

@@ -124,7 +124,7 @@ fn a_grid_on_the_ceiling_comes_back_straight() {
             let params = Params { focal: Some(600.0), ..with_distortion(distortion) };
             let view = view_of(&shown_room(&truth, 0.0, 7), &params).unwrap();
             let params = UnwarpParams { axes: Some([0, 2]), max_side: 600, ..UnwarpParams::default() };
-            unwarp(&photo, &view, &mask, None, &params, Monitor::default().job()).unwrap()
+            unwarp(&photo, &view, &mask, &params, Monitor::default().job()).unwrap()
         };
         let flat = unwarped(corner);
         // The map is exact: pixels of the unwarped image, on the ceiling, form a square grid.
@@ -165,7 +165,7 @@ fn a_significant_distortion_is_undone_and_another_changes_no_bit() {
     assert!(off.warnings().iter().any(|w| w.code == crate::warning::Code::LensDistortion));
     let flat = |view: &View| {
         let params = UnwarpParams { axes: Some([0, 2]), max_side: 600, ..UnwarpParams::default() };
-        unwarp(&photo, view, &mask, None, &params, job.job()).unwrap()
+        unwarp(&photo, view, &mask, &params, job.job()).unwrap()
     };
     assert!(crookedness(&flat(&off)) > 2.0 * crookedness(&flat(&by_default)));
 
@@ -173,7 +173,7 @@ fn a_significant_distortion_is_undone_and_another_changes_no_bit() {
     let (by_default, off) = (view(&photo, &Params::default()), view(&photo, &with_distortion(0.0)));
     assert_eq!(format!("{by_default:?}"), format!("{off:?}"));
     let params = UnwarpParams { axes: Some([0, 2]), max_side: 600, ..UnwarpParams::default() };
-    let [a, b] = [&by_default, &off].map(|view| unwarp(&photo, view, &mask, None, &params, job.job()).unwrap());
+    let [a, b] = [&by_default, &off].map(|view| unwarp(&photo, view, &mask, &params, job.job()).unwrap());
     assert!(a.image.data == b.image.data && a.to_photo.lens.is_none());
 }
 

@@ -130,7 +130,7 @@ fn a_ceiling_seen_nearly_edge_on_raises_a_warning() {
         let rows = horizon - 2.0 * above..horizon - above;
         let mask = Image::from_fn(WIDTH, HEIGHT, |_, y| [f32::from(rows.contains(&(y as f64)))]).unwrap();
         let photo = Image::new(WIDTH, HEIGHT, 3).unwrap();
-        unwarp(&photo, &view, &mask, None, &UnwarpParams::default(), Monitor::default().job()).unwrap()
+        unwarp(&photo, &view, &mask, &UnwarpParams::default(), Monitor::default().job()).unwrap()
     };
     let flat = seen(20.0).warnings();
     assert!(codes(&flat).contains(&Code::PlaneNearHorizon), "{flat:?}");
