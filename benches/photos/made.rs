@@ -206,7 +206,7 @@ fn layout(room: &Room, shot: &Shot, to_photo: &Homography, pixels: &[Vec<u32>], 
         kinds: some.iter().map(|(_, kind, _)| *kind).collect(),
         whole: some.into_iter().map(|(shape, _, _)| shape).collect(),
         cut: Vec::new(),
-        others: rest.into_iter().map(|(shape, _, _)| shape.centre).collect(),
+        others: rest.into_iter().map(|(shape, _, _)| shape.centroid).collect(),
         lit: Some(*lit),
         bar: 0.0,
     }

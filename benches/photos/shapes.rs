@@ -10,12 +10,17 @@ const LINE_ASPECT: f64 = 6.0;
 
 /// Minimum aspect ratio of a lamp whose long side has a meaningful direction. [convention]
 const LONG: f64 = 1.2;
+/// Rectangles around a lamp whose areas differ by less than this factor are equally small. [convention]
+const SAME_AREA: f64 = 1.02;
 /// Cosine of the maximum angle between a row and a step from lamp to lamp along the row. [convention: 20 degrees]
 const ALONG: f64 = 0.94;
 
 /// The shape of one lamp.
 #[derive(Clone, Debug)]
 pub struct Shape {
+    /// Centroid of the convex hull.
+    pub centroid: DVec2,
+    /// Centre of the smallest rectangle around the lamp.
     pub centre: DVec2,
     /// Sides of the smallest rectangle around the lamp, the longer side first.
     pub sides: DVec2,
@@ -31,11 +36,14 @@ impl Shape {
         if hull.len() < 3 {
             return None;
         }
-        // Find the smallest rectangle: one of its sides lies along a side of the convex hull.
+        // Find the smallest rectangle: one of its sides lies along a side of the convex hull. A right triangle has two
+        // of equal area, so the shorter circumference decides.
         let along = |i: usize| (hull[(i + 1) % hull.len()] - hull[i]).normalize_or_zero();
         let rectangle = |axis: DVec2| DVec2::new(polygon::extent(&hull, axis), polygon::extent(&hull, axis.perp()));
         let axes = (0..hull.len()).map(along).filter(|axis| *axis != DVec2::ZERO);
-        let axis = axes.min_by(|a, b| rectangle(*a).element_product().total_cmp(&rectangle(*b).element_product()))?;
+        let smallest = axes.clone().map(|axis| rectangle(axis).element_product()).fold(f64::MAX, f64::min);
+        let small = axes.filter(|axis| rectangle(*axis).element_product() <= SAME_AREA * smallest);
+        let axis = small.min_by(|a, b| rectangle(*a).element_sum().total_cmp(&rectangle(*b).element_sum()))?;
         let sides = rectangle(axis);
         let (sides, axis) =
             if sides.x >= sides.y { (sides, axis) } else { (DVec2::new(sides.y, sides.x), axis.perp()) };
@@ -46,7 +54,8 @@ impl Shape {
         };
         let centre = axis * middle(axis) + axis.perp() * middle(axis.perp());
         let area = area.unwrap_or_else(|| polygon::area(outline).abs());
-        (area > 0.0 && sides.y > 0.0).then_some(Self { centre, sides, axis, area })
+        let centroid = centroid(&hull);
+        (area > 0.0 && sides.y > 0.0).then_some(Self { centroid, centre, sides, axis, area })
     }
 
     pub fn aspect(&self) -> f64 {
@@ -80,6 +89,17 @@ impl Shape {
     }
 }
 
+/// Centroid of a convex polygon.
+fn centroid(hull: &[DVec2]) -> DVec2 {
+    let (mut sum, mut area) = (DVec2::ZERO, 0.0);
+    for i in 1..hull.len() - 1 {
+        let (a, b) = (hull[i] - hull[0], hull[i + 1] - hull[0]);
+        sum += (a + b) / 3.0 * a.perp_dot(b);
+        area += a.perp_dot(b);
+    }
+    if area == 0.0 { hull[0] } else { hull[0] + sum / area }
+}
+
 /// A set of lamps in one plane; all lengths are in one unit.
 #[derive(Clone, Debug, Default)]
 pub struct Lamps {
@@ -89,7 +109,7 @@ pub struct Lamps {
     pub kinds: Vec<usize>,
     /// Lamps that the border of a texture cuts; they count for the statistics of lines.
     pub cut: Vec<Shape>,
-    /// Centres of further lamps, which are cut or partly hidden; they count for the spacing.
+    /// Centroids of further lamps, which are cut or partly hidden; they count for the spacing.
     pub others: Vec<DVec2>,
     /// Lower and upper bound of the lit share of the plane.
     pub lit: Option<[f64; 2]>,
@@ -193,9 +213,9 @@ impl Lamps {
         median(self.whole.iter().map(Shape::aspect))
     }
 
-    /// Median distance from the centre of a lamp to the nearest other centre.
+    /// Median distance from the centroid of a lamp to the nearest other one.
     pub fn spacing(&self) -> Option<f64> {
-        let centres: Vec<DVec2> = self.whole.iter().map(|s| s.centre).chain(self.others.iter().copied()).collect();
+        let centres: Vec<DVec2> = self.whole.iter().map(|s| s.centroid).chain(self.others.iter().copied()).collect();
         median((0..centres.len()).filter_map(|i| {
             let others = (0..centres.len()).filter(|j| *j != i);
             others.map(|j| centres[i].distance(centres[j])).min_by(f64::total_cmp)
@@ -239,7 +259,7 @@ impl Lamps {
     /// periods of a lattice, even if some of its sites are empty.
     pub fn steps(&self) -> Option<[f64; 2]> {
         let nearest = self.spacing()?;
-        let centres: Vec<DVec2> = self.whole.iter().map(|s| s.centre).chain(self.others.iter().copied()).collect();
+        let centres: Vec<DVec2> = self.whole.iter().map(|s| s.centroid).chain(self.others.iter().copied()).collect();
         let pairs = centres.iter().enumerate().flat_map(|(i, a)| centres[i + 1..].iter().map(move |b| *b - *a));
         let mut steps: Vec<DVec2> = pairs.filter(|d| d.length() > 0.5 * nearest).collect();
         steps.sort_by(|a, b| a.length().total_cmp(&b.length()));
