@@ -12,12 +12,14 @@
 //! 3. [`painted`] chooses, for each positive stroke, the regions with the sharpest contours that cover it, and
 //!    [`leaks`] cuts off bright surfaces that touch them. Without positive strokes, [`proposed`] chooses the regions
 //!    most like lamps and like each other.
-//! 4. [`similar`] adds regions without a stroke that look like the painted ones and lie on the plane.
+//! 4. [`similar`] adds regions without a stroke that look like the painted ones and lie on the plane, and
+//!    [`further_kinds`] lamps of other kinds if they form a lattice.
 //! 5. [`soft`] computes the confidence. It is one half on the contour of each region, which may run between pixels.
 //!
 //! Not modelled: lamps darker than the plane that they light, such as the housing of an uplight; lamps behind a grid.
 
 mod footprint;
+mod further_kinds;
 mod leaks;
 mod on_lattice;
 mod painted;

@@ -10,7 +10,8 @@ use glam::DVec2;
 use std::ops::RangeInclusive;
 
 /// Limits for a region on a free site of the lattice. [bench photos:tune]
-const ON_LATTICE: Limits = Limits { contrast: 0.5, negatives: 0.005, pixels: 12.0, area: 0.5, dimmer: 4.0 };
+const ON_LATTICE: Limits =
+    Limits { contrast: 0.5, negatives: 0.005, pixels: 12.0, area: 0.5, dimmer: 4.0, any_size: false };
 /// Range of the area of a region divided by the median area of the lamps on the lattice, both relative to the cell of
 /// the lattice at their place. Bloom enlarges distant lamps. [bench photos:tune]
 const EQUAL_AREA: RangeInclusive<f64> = 0.6..=2.0;

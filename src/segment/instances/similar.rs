@@ -112,18 +112,21 @@ pub struct Limits {
     pub area: f64,
     /// Amount of L* by which the region may be darker than the least L* of the model.
     pub dimmer: f64,
+    /// Whether the region may have another size and shape than the lamps under the strokes.
+    pub any_size: bool,
 }
 
 /// Limits for any region: the limits of [`LampLimits`] unchanged, no pixel under negative strokes, any number of
 /// pixels. [convention]
-const STRICT: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 0.0, area: 1.0, dimmer: 0.0 };
+const STRICT: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 0.0, area: 1.0, dimmer: 0.0, any_size: false };
 /// Limits for a region with the size and shape of a lamp that is found already. Bloom on a bright ceiling lowers the
 /// contrast of lamps, and negative strokes painted in a hurry graze them. Regions of fewer than 30 pixels have no clear
 /// shape. [bench photos:tune]
-const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0, area: 1.0, dimmer: 0.0 };
+const ALIKE: Limits = Limits { contrast: 0.6, negatives: 0.005, pixels: 30.0, area: 1.0, dimmer: 0.0, any_size: false };
 /// Limits for a region that continues a row of lamps of equal width. Louvres make lamps dimmer the flatter one looks at
 /// them, so the far lamps of a row may be much darker than the near ones. [bench photos:nostrokes]
-const IN_LINE: Limits = Limits { contrast: 1.0, negatives: 0.0, pixels: 30.0, area: 0.0, dimmer: 30.0 };
+const IN_LINE: Limits =
+    Limits { contrast: 1.0, negatives: 0.0, pixels: 30.0, area: 0.0, dimmer: 30.0, any_size: false };
 /// Maximum difference of the widths of two lamps of a row, and maximum distance between their centres, both measured
 /// across the row, as a share of the larger width. [bench photos:nostrokes]
 const EQUAL_WIDTH: f64 = 0.15;
@@ -258,6 +261,9 @@ impl Search<'_> {
             if is_in_hole || is_in_row || (is_on_plane && likeness >= NEARLY) {
                 chosen.choose(node);
             }
+        }
+        if !self.is_proposed {
+            self.add_further_kinds(&model, painted, &taken, &mut chosen, &mut similar, job)?;
         }
         self.add_alike(&model, painted, &taken, &mut chosen, &mut similar, job)?;
         self.add_on_lattice(&model, painted, &taken, &mut chosen, &mut similar, job)?;
@@ -487,7 +493,7 @@ impl Search<'_> {
 
     /// Returns the lamps whose area and aspect nearly equal the node's, measured on a face of the room; no lamps if
     /// the room has no box layout.
-    fn lamps_of_equal_shape<'a>(
+    pub fn lamps_of_equal_shape<'a>(
         &self,
         lamps: impl Iterator<Item = &'a u32>,
         node: usize,
@@ -540,7 +546,7 @@ impl Search<'_> {
     }
 
     /// Contrast of a node to its ring, relative to the minimum for a lamp of its size.
-    fn ring_likeness(&self, model: &LampLimits, node: usize, ring: &Surroundings) -> f64 {
+    pub fn ring_likeness(&self, model: &LampLimits, node: usize, ring: &Surroundings) -> f64 {
         ring.contrast / (model.ring * sharpness(self.regions.area[node]))
     }
 
@@ -551,7 +557,7 @@ impl Search<'_> {
     }
 
     /// Whether at least [`ON_FACE`] of a node's pixels show the face of the room that holds the lamps.
-    fn is_on_face(&self, node: usize) -> bool {
+    pub fn is_on_face(&self, node: usize) -> bool {
         let surface = self.regions.surface.as_ref();
         surface.is_some_and(|surface| surface.on_face[node] >= ON_FACE * self.regions.area[node])
     }
@@ -560,11 +566,11 @@ impl Search<'_> {
     /// brightness, colour and contour gradient. A value of at least 1 means that the node meets all limits. The
     /// likeness is 0 if size, shape or negative strokes rule the node out, or if the likeness in contour gradient is
     /// below [`NEARLY`].
-    fn likeness(&self, model: &LampLimits, node: usize, limits: Limits) -> f64 {
+    pub fn likeness(&self, model: &LampLimits, node: usize, limits: Limits) -> f64 {
         let regions = self.regions;
         let area = regions.area[node];
-        if !self.has_size(model, limits, node) || area < limits.pixels || self.negatives[node] > limits.negatives * area
-        {
+        let has_size = limits.any_size || self.has_size(model, limits, node);
+        if !has_size || area < limits.pixels || self.negatives[node] > limits.negatives * area {
             return 0.0;
         }
         let sharpness = sharpness(area);

@@ -175,6 +175,27 @@ fn things_of_another_shape_are_no_lamps() {
 }
 
 #[test]
+fn unpainted_lamps_of_another_kind_are_found_if_they_form_a_lattice_or_stand_out() {
+    let strokes = [stroke(true, &[[30.0, 26.0], [50.0, 26.0]])];
+    let are_found = |further: &[[usize; 4]]| {
+        let features = features_with(&[&[[20, 20, 60, 32], [220, 20, 260, 32]], further].concat());
+        let mask = segment_in(&features, &strokes, Some(&ceiling())).mask;
+        let is_found = |r: &[usize; 4]| mask.pixel(r[0] + 3, r[1] + 3)[0] > 0.5;
+        assert!(is_found(&[20, 20, 60, 32]) && is_found(&[220, 20, 260, 32]));
+        let hits = further.iter().filter(|r| is_found(r)).count();
+        assert!(hits == 0 || hits == further.len(), "{hits} of {}", further.len());
+        hits > 0
+    };
+    let square = |x: usize, y: usize, side: usize| [x, y, x + side, y + side];
+    let lattice: Vec<[usize; 4]> = (0..12).map(|i| square(20 + 40 * (i % 6), 46 + 50 * (i / 6), 6)).collect();
+    assert!(are_found(&lattice), "small lamps on a lattice");
+    assert!(!are_found(&lattice[..2]), "two small regions");
+    assert!(!are_found(&[square(130, 80, 9)]), "a small region");
+    assert!(are_found(&[square(110, 66, 46)]), "a single lamp that stands out");
+    assert!(!are_found(&[square(64, 36, 46)]), "a region close to a lamp");
+}
+
+#[test]
 fn confidence_is_one_half_on_the_contour() {
     let ceiling = ceiling();
     let segmented = segment(&[stroke(true, &[[30.0, 26.0], [50.0, 26.0]])], Some(&ceiling));

@@ -142,6 +142,11 @@ impl<'a> Disjoint<'a> {
         Ok(Self { tree, is_chosen: try_vec(tree.len(), false)?, is_around: try_vec(tree.len(), false)? })
     }
 
+    pub fn try_clone(&self) -> Result<Self> {
+        let copy = |flags: &[bool]| try_collect(flags.iter().copied());
+        Ok(Self { tree: self.tree, is_chosen: copy(&self.is_chosen)?, is_around: copy(&self.is_around)? })
+    }
+
     pub fn is_around(&self, node: u32) -> bool {
         self.is_around[node as usize]
     }
