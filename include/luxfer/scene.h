@@ -399,7 +399,8 @@ luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
 
 /**
  * Replaces the values of a material by params, or by the defaults if params is NULL. The material keeps its textures,
- * and also its name if params->name is NULL. To change single values, read the material first. Any thread.
+ * and what params do not state (KHR_materials_specular), and also its name if params->name is NULL. To change single
+ * values, read the material first. Any thread.
  * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_set_material(luxfer_scene *scene,

@@ -41,9 +41,11 @@ pub struct BsdfParams {
     /// Share of the light that continues in a straight line through the material, before the reflection loss at the
     /// top layer is subtracted; 0 for opaque materials.
     pub transmission: Vec3,
-    /// Reflectance of the material's dielectric component at normal incidence, without its metallic component. The
-    /// attenuation of the diffuse layer and of the transmitted light follows from it.
+    /// Reflectance of the material's dielectric component at normal and at grazing incidence, without its metallic
+    /// component, in the channel with the largest reflectance. The attenuation of the diffuse layer and of the
+    /// transmitted light follows from it (`KHR_materials_specular`).
     pub dielectric_f0: f32,
+    pub dielectric_f90: f32,
 }
 
 impl BsdfParams {
@@ -53,7 +55,7 @@ impl BsdfParams {
         if self.transmission == Vec3::ZERO {
             return Vec3::ZERO;
         }
-        let lost = ggx::schlick(Vec3::splat(self.dielectric_f0), self.f90, cosine.abs()).x;
+        let lost = ggx::schlick(Vec3::splat(self.dielectric_f0), self.dielectric_f90, cosine.abs()).x;
         self.transmission * (1.0 - lost)
     }
 }
@@ -355,9 +357,9 @@ impl<'a> SpecularLayers<'a> {
             mean_coat_albedo = albedo.of(albedo.row.average());
         } else if has_top {
             top = ggx::schlick(s.f0, s.f90, wo.z).max_element();
-            coat_albedo = ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, wo.z).x;
+            coat_albedo = ggx::schlick(Vec3::splat(s.dielectric_f0), s.dielectric_f90, wo.z).x;
             // The mean of Schlick's factor (1 - cos θ)⁵, weighted by the cosine over the hemisphere, is 1/21.
-            mean_coat_albedo = s.dielectric_f0 + (s.f90 - s.dielectric_f0) / 21.0;
+            mean_coat_albedo = s.dielectric_f0 + (s.dielectric_f90 - s.dielectric_f0) / 21.0;
         }
         let relative_coat_transmittance = (1.0 - coat_albedo).max(0.0) / (1.0 - mean_coat_albedo).max(1e-3);
         // Set the probability of each layer in proportion to its albedo.
@@ -399,7 +401,7 @@ impl<'a> SpecularLayers<'a> {
         let s = &self.bsdf_params;
         match &self.lobe {
             Some((_, albedo)) => albedo.of(albedo.row.directional(cosine)),
-            None if s.f90 > 0.0 => ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, cosine).x,
+            None if s.f90 > 0.0 => ggx::schlick(Vec3::splat(s.dielectric_f0), s.dielectric_f90, cosine).x,
             None => 0.0,
         }
     }
@@ -441,13 +443,14 @@ impl<'a> SpecularLayers<'a> {
 /// The directional albedo of a rough dielectric top layer, looked up in the albedo table.
 struct TopAlbedo<'a> {
     row: ggx::AlbedoRow<'a>,
-    /// Factors for the two values of a table entry: `dielectric_f0` for the scale, `f90` for the bias.
+    /// Factors for the two values of a table entry: `dielectric_f0` for the scale, `dielectric_f90` for the bias.
     weights: Vec2,
 }
 
 impl<'a> TopAlbedo<'a> {
     fn new(table: &'a AlbedoTable, bsdf_params: &BsdfParams) -> Self {
-        Self { row: table.row(bsdf_params.roughness), weights: Vec2::new(bsdf_params.dielectric_f0, bsdf_params.f90) }
+        let weights = Vec2::new(bsdf_params.dielectric_f0, bsdf_params.dielectric_f90);
+        Self { row: table.row(bsdf_params.roughness), weights }
     }
 
     fn of(&self, scale_and_bias: Vec2) -> f32 {

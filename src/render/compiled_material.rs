@@ -35,6 +35,7 @@ impl CompiledMaterial {
             roughness: 1.0,
             transmission: Vec3::ZERO,
             dielectric_f0: 0.0,
+            dielectric_f90: 0.0,
         },
         is_textured: false,
         layered: false,
@@ -57,26 +58,54 @@ impl CompiledMaterial {
     }
 }
 
-/// Converts the metallic-roughness parameters at a surface point to the parameters of the layers (glTF 2.0, appendix
-/// B.2).
-pub fn bsdf_params(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> BsdfParams {
-    layers(material, material.transmission, base, metallic, roughness)
+/// The values of a material that textures and vertex colours may vary, at one surface point.
+#[derive(Clone, Copy, Debug)]
+pub struct PointValues {
+    /// Base colour.
+    pub base: Vec3,
+    pub metallic: f32,
+    pub roughness: f32,
+    /// Strength and colour of the reflections of the dielectric component.
+    pub specular: f32,
+    pub specular_color: Vec3,
 }
 
-fn layers(material: &Material, transmission: f32, base: Vec3, metallic: f32, roughness: f32) -> BsdfParams {
-    let base = base.clamp(Vec3::ZERO, Vec3::ONE);
-    let (metallic, roughness) = (metallic.clamp(0.0, 1.0), roughness.clamp(0.0, 1.0));
+impl PointValues {
+    /// Returns the values of a material without its textures.
+    pub fn new(material: &Material) -> Self {
+        Self {
+            base: material.base_color,
+            metallic: material.metallic,
+            roughness: material.roughness,
+            specular: material.specular.strength,
+            specular_color: material.specular.color,
+        }
+    }
+}
+
+/// Converts the values of a material at a surface point to the parameters of the layers (glTF 2.0, appendix B.2, and
+/// `KHR_materials_specular`).
+pub fn bsdf_params(material: &Material, values: &PointValues) -> BsdfParams {
+    layers(material, material.transmission, values)
+}
+
+fn layers(material: &Material, transmission: f32, values: &PointValues) -> BsdfParams {
+    let base = values.base.clamp(Vec3::ZERO, Vec3::ONE);
+    let (metallic, roughness) = (values.metallic.clamp(0.0, 1.0), values.roughness.clamp(0.0, 1.0));
+    let specular = values.specular.clamp(0.0, 1.0);
     let transmission = transmission.clamp(0.0, 1.0);
-    let dielectric_f0 = maths::powi((material.ior - 1.0) / (material.ior + 1.0), 2);
+    let reflectance = maths::powi((material.ior - 1.0) / (material.ior + 1.0), 2);
+    let dielectric_f0 = (values.specular_color * reflectance).clamp(Vec3::ZERO, Vec3::ONE) * specular;
     // A dielectric with an index of refraction of 1 has no interface, so it does not reflect at grazing angles either.
     let has_interface = material.ior > 1.0;
     BsdfParams {
         diffuse: base * ((1.0 - metallic) * (1.0 - transmission)),
-        f0: Vec3::splat(dielectric_f0).lerp(base, metallic),
-        f90: if has_interface { 1.0 } else { metallic },
+        f0: dielectric_f0.lerp(base, metallic),
+        f90: if has_interface { specular + (1.0 - specular) * metallic } else { metallic },
         roughness,
         transmission: base * ((1.0 - metallic) * transmission),
-        dielectric_f0,
+        dielectric_f0: dielectric_f0.max_element(),
+        dielectric_f90: if has_interface { specular } else { metallic },
     }
 }
 
@@ -96,14 +125,14 @@ pub struct SolidParams {
 /// Converts the metallic-roughness parameters at a point of a solid body's surface. The blend of glTF (appendix B.2,
 /// `KHR_materials_transmission`) is linear in the shares of metal, of transmission and of the diffuse base, so a blend
 /// of patches is the same.
-pub fn solid_params(material: &Material, base: Vec3, metallic: f32, roughness: f32) -> SolidParams {
-    let metallic = metallic.clamp(0.0, 1.0);
+pub fn solid_params(material: &Material, values: &PointValues) -> SolidParams {
+    let metallic = values.metallic.clamp(0.0, 1.0);
     let clear = (1.0 - metallic) * material.transmission.clamp(0.0, 1.0);
     let metallic = if clear < 1.0 { metallic / (1.0 - clear) } else { 0.0 };
     SolidParams {
         clear,
-        tint: base.clamp(Vec3::ZERO, Vec3::ONE),
-        roughness: roughness.clamp(0.0, 1.0),
-        opaque: layers(material, 0.0, base, metallic, roughness),
+        tint: values.base.clamp(Vec3::ZERO, Vec3::ONE),
+        roughness: values.roughness.clamp(0.0, 1.0),
+        opaque: layers(material, 0.0, &PointValues { metallic, ..*values }),
     }
 }

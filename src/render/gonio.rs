@@ -111,8 +111,7 @@ fn bodies(scene: &Scene, meshes: &[u32]) -> Result<Scene> {
     // same.
     let mut used = try_vec(scene.textures.len(), false)?;
     for material in kept().filter_map(|mesh| scene.materials.get(mesh.material)) {
-        let [base, layers] = [material.base_color_texture, material.metallic_roughness_texture];
-        for reference in [base, layers, material.normal_texture, material.emission_texture].into_iter().flatten() {
+        for reference in material.textures() {
             used.get_mut(reference.texture).into_iter().for_each(|used| *used = true);
         }
     }

@@ -7,7 +7,7 @@
 //! roulette, not after this number of bounces.
 
 use super::bsdf::{BsdfParams, MIRROR_ROUGHNESS};
-use super::compiled_material::{self, CompiledMaterial, SolidParams};
+use super::compiled_material::{self, CompiledMaterial, PointValues, SolidParams};
 use super::ggx::{self, AlbedoTable};
 use super::medium;
 use crate::maths;
@@ -215,15 +215,20 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
     let mut compiled_materials = Vec::with_capacity(scene.materials.len());
     for (index, material) in scene.materials.iter().enumerate() {
         let tint = if used[index] { tints[index] } else { Range::ONE };
-        let base = range(&material.base_color_texture).times(&tint);
-        let layers = range(&material.metallic_roughness_texture);
-        let compiled = compile_material(material, base, layers, range(&material.normal_texture));
+        let texels = TexelRanges {
+            base: range(&material.base_color_texture).times(&tint),
+            layers: range(&material.metallic_roughness_texture),
+            normals: range(&material.normal_texture),
+            specular: range(&material.specular.texture),
+            specular_color: range(&material.specular.color_texture),
+        };
+        let compiled = compile_material(material, &texels);
         compiled_materials.push(compiled);
         if used[index] {
             if material.is_solid() {
-                needed.include_solid_material(index, &compiled, solid_extremes(material, base, layers), table);
+                needed.include_solid_material(index, &compiled, solid_extremes(material, &texels), table);
             } else {
-                needed.include_material(index, &compiled, extremes(material, base, layers), table);
+                needed.include_material(index, &compiled, extremes(material, &texels), table);
             }
             if spread[index] {
                 needed.include_emission(material, range(&material.emission_texture));
@@ -253,6 +258,8 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
         (&material.metallic_roughness_texture, compiled.is_textured),
         (&material.normal_texture, compiled.has_normal_map),
         (&material.emission_texture, material.emission.max_element() > 0.0),
+        (&material.specular.texture, compiled.is_textured),
+        (&material.specular.color_texture, compiled.is_textured),
     ] {
         if let Some(t) = texture {
             varied[t.texture] |= counts && !ranges[t.texture].is_constant();
@@ -388,7 +395,19 @@ fn range_of(image: &crate::image::Image) -> Range {
     Range { low, high }
 }
 
-fn compile_material(material: &Material, base: Range, layers: Range, normals: Range) -> CompiledMaterial {
+/// The ranges of the textures of a material; the range of an absent texture is 1.
+struct TexelRanges {
+    /// Base colour, multiplied by the vertex colours.
+    base: Range,
+    /// Metalness and roughness.
+    layers: Range,
+    normals: Range,
+    specular: Range,
+    specular_color: Range,
+}
+
+fn compile_material(material: &Material, texels: &TexelRanges) -> CompiledMaterial {
+    let TexelRanges { base, layers, normals, specular, specular_color } = texels;
     let min_alpha = (material.alpha * base.low.w).min(material.alpha * base.high.w);
     let has_alpha = match material.alpha_mode {
         AlphaMode::Opaque => false,
@@ -400,13 +419,20 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     let is_neutral = (bends * material.normal_scale).truncate().max_element() == 0.0 && normals.low.z > 0.5;
     let base_varies = base.low.truncate() != base.high.truncate();
     let layers_vary = (layers.low.y, layers.low.z) != (layers.high.y, layers.high.z);
-    let colour = material.base_color * base.high.truncate();
-    let (metallic, roughness) = (material.metallic * layers.high.z, material.roughness * layers.high.y);
+    let specular_varies =
+        specular.low.w != specular.high.w || specular_color.low.truncate() != specular_color.high.truncate();
+    let plain = PointValues::new(material);
+    let values = PointValues {
+        base: plain.base * base.high.truncate(),
+        metallic: plain.metallic * layers.high.z,
+        roughness: plain.roughness * layers.high.y,
+        specular: plain.specular * specular.high.w,
+        specular_color: plain.specular_color * specular_color.high.truncate(),
+    };
     CompiledMaterial {
-        bsdf_params: compiled_material::bsdf_params(material, colour, metallic, roughness),
-        is_textured: base_varies || layers_vary,
-        layered: material.is_solid()
-            || extremes(material, base, layers).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
+        bsdf_params: compiled_material::bsdf_params(material, &values),
+        is_textured: base_varies || layers_vary || specular_varies,
+        layered: material.is_solid() || extremes(material, texels).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
         has_normal_map: material.normal_texture.is_some() && !is_neutral,
         has_alpha,
         lets_light_through: has_alpha || (material.transmission > 0.0 && !material.is_solid()),
@@ -414,30 +440,57 @@ fn compile_material(material: &Material, base: Range, layers: Range, normals: Ra
     }
 }
 
-/// Returns the BSDF parameters of a material, with its largest base colour, for the four combinations of its smallest
-/// or largest metalness with its smallest or largest roughness. All parameters of the layers are linear or monotone in
-/// metalness and roughness, so their extremes are among these combinations.
-fn extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = BsdfParams> {
-    let factors = extreme_factors(material, base, layers);
-    factors.map(move |(colour, m, r)| compiled_material::bsdf_params(material, colour, m, r))
+/// Returns the BSDF parameters of a material, with its largest colours, for all combinations of its smallest or largest
+/// metalness, roughness and specular strength. All parameters of the layers are linear or monotone in these values, so
+/// their extremes are among these combinations. The attenuation of the diffuse layer is that of the smallest specular
+/// colour.
+fn extremes<'a>(material: &'a Material, texels: &'a TexelRanges) -> impl Iterator<Item = BsdfParams> + 'a {
+    let least = material.specular.color * texels.specular_color.low.truncate();
+    extreme_values(material, texels).map(move |values| {
+        let faint = PointValues { specular_color: values.specular_color.min(least), ..values };
+        let dielectric_f0 = compiled_material::bsdf_params(material, &faint).dielectric_f0;
+        BsdfParams { dielectric_f0, ..compiled_material::bsdf_params(material, &values) }
+    })
 }
 
-/// Returns the same combinations as [`extremes`] for the material of solid bodies.
-fn solid_extremes(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = SolidParams> + Clone {
-    let factors = extreme_factors(material, base, layers);
-    factors.map(move |(colour, m, r)| compiled_material::solid_params(material, colour, m, r))
+/// Returns the parameters of the material of solid bodies for the same combinations as [`extremes`].
+fn solid_extremes<'a>(
+    material: &'a Material,
+    texels: &'a TexelRanges,
+) -> impl Iterator<Item = SolidParams> + Clone + 'a {
+    extreme_values(material, texels).map(move |values| compiled_material::solid_params(material, &values))
 }
 
-/// Returns the largest base colour with each combination of the extremes of metalness and roughness.
-fn extreme_factors(material: &Material, base: Range, layers: Range) -> impl Iterator<Item = (Vec3, f32, f32)> + Clone {
-    let ends = |factor: f32, low: f32, high: f32| {
-        let (a, b) = (factor * low, factor * high);
-        [a.min(b), a.max(b)]
+/// Returns the largest colours of a material with each combination of the extremes of its other values.
+fn extreme_values<'a>(
+    material: &'a Material,
+    texels: &'a TexelRanges,
+) -> impl Iterator<Item = PointValues> + Clone + 'a {
+    let plain = PointValues::new(material);
+    let largest = |colour: Vec3, range: &Range| (colour * range.low.truncate()).max(colour * range.high.truncate());
+    let base = largest(plain.base, &texels.base);
+    let specular_color = largest(plain.specular_color, &texels.specular_color);
+    let metallic = ends(plain.metallic, texels.layers.low.z, texels.layers.high.z);
+    let roughness = ends(plain.roughness, texels.layers.low.y, texels.layers.high.y);
+    let specular = ends(plain.specular, texels.specular.low.w, texels.specular.high.w);
+    let values = move |metallic: f32, roughness: f32, specular: f32| PointValues {
+        base,
+        metallic,
+        roughness,
+        specular,
+        specular_color,
     };
-    let colour = (material.base_color * base.low.truncate()).max(material.base_color * base.high.truncate());
-    let metallic = ends(material.metallic, layers.low.z, layers.high.z);
-    let roughness = ends(material.roughness, layers.low.y, layers.high.y);
-    metallic.into_iter().flat_map(move |m| roughness.map(|r| (colour, m, r)))
+    metallic.flat_map(move |m| {
+        let specular = specular.clone();
+        roughness.clone().flat_map(move |r| specular.clone().map(move |s| values(m, r, s)))
+    })
+}
+
+/// Returns the smallest and the largest product of a factor with a texel in `[low, high]`; only one number if they are
+/// equal.
+fn ends(factor: f32, low: f32, high: f32) -> impl Iterator<Item = f32> + Clone {
+    let (a, b) = (factor * low, factor * high);
+    std::iter::once(a.min(b)).chain((a != b).then_some(a.max(b)))
 }
 
 /// Returns the largest albedo, over all directions of incidence, with the BSDF parameters `s`. The result may be up to
@@ -453,9 +506,12 @@ fn albedo_bound(s: &BsdfParams, table: Option<&AlbedoTable>) -> Vec3 {
             _ if s.f90 == 0.0 => (Vec3::ZERO, 0.0),
             Some(table) if s.roughness >= MIRROR_ROUGHNESS => {
                 let share = table.row(s.roughness).directional(cosine);
-                (s.f0 * share.x + s.f90 * share.y, s.dielectric_f0 * share.x + s.f90 * share.y)
+                (s.f0 * share.x + s.f90 * share.y, s.dielectric_f0 * share.x + s.dielectric_f90 * share.y)
             }
-            _ => (ggx::schlick(s.f0, s.f90, cosine), ggx::schlick(Vec3::splat(s.dielectric_f0), s.f90, cosine).x),
+            _ => {
+                let dielectric_f0 = Vec3::splat(s.dielectric_f0);
+                (ggx::schlick(s.f0, s.f90, cosine), ggx::schlick(dielectric_f0, s.dielectric_f90, cosine).x)
+            }
         };
         bound = bound.max(s.diffuse * (1.0 - taken) + top + s.through(cosine));
     }

@@ -1,7 +1,7 @@
 //! Texture look-ups at a surface point: opacity, BSDF parameters, and tangents for normal maps.
 
 use super::bsdf::BsdfParams;
-use super::compiled_material::{self, CompiledMaterial, SolidParams};
+use super::compiled_material::{self, CompiledMaterial, PointValues, SolidParams};
 use super::facet::Facet;
 use crate::scene::{Material, Mesh, Scene, TextureRef};
 use glam::{Vec2, Vec3, Vec4};
@@ -33,29 +33,34 @@ impl<'w> TextureContext<'w> {
         if !compiled.is_textured {
             return compiled.bsdf_params;
         }
-        let (base, metallic, roughness) = self.factors();
-        compiled_material::bsdf_params(self.material, base, metallic, roughness)
+        compiled_material::bsdf_params(self.material, &self.values())
     }
 
     /// Returns the parameters of a solid body's material at this point.
     pub fn solid_params(&self) -> SolidParams {
-        let (base, metallic, roughness) = self.factors();
-        compiled_material::solid_params(self.material, base, metallic, roughness)
+        compiled_material::solid_params(self.material, &self.values())
     }
 
-    /// Returns the base colour, the metalness and the roughness at this point.
-    fn factors(&self) -> (Vec3, f32, f32) {
+    /// Returns the values of the material at this point.
+    fn values(&self) -> PointValues {
         let material = self.material;
-        let mut base = material.base_color * self.vertex_colour().truncate();
+        let mut values = PointValues::new(material);
+        values.base *= self.vertex_colour().truncate();
         if let Some(texture) = &material.base_color_texture {
-            base *= self.look_up(texture).truncate();
+            values.base *= self.look_up(texture).truncate();
         }
-        let (mut metallic, mut roughness) = (material.metallic, material.roughness);
         if let Some(texture) = &material.metallic_roughness_texture {
             let texel = self.look_up(texture);
-            (roughness, metallic) = (roughness * texel.y, metallic * texel.z);
+            values.roughness *= texel.y;
+            values.metallic *= texel.z;
         }
-        (base, metallic, roughness)
+        if let Some(texture) = &material.specular.texture {
+            values.specular *= self.look_up(texture).w;
+        }
+        if let Some(texture) = &material.specular.color_texture {
+            values.specular_color *= self.look_up(texture).truncate();
+        }
+        values
     }
 
     /// Returns the interpolated vertex colour; 1 if the mesh has no vertex colours.

@@ -543,22 +543,18 @@ fn check_mesh(scene: &Scene, mesh: &Mesh) -> Result<()> {
 }
 
 fn check_material(scene: &Scene, material: &Material) -> Result<()> {
-    let refs = [
-        &material.base_color_texture,
-        &material.metallic_roughness_texture,
-        &material.normal_texture,
-        &material.emission_texture,
-    ];
-    for TextureRef { texture, uv_set, .. } in refs.into_iter().flatten() {
-        if *texture >= scene.textures.len() || *uv_set > 1 {
+    for TextureRef { texture, uv_set, .. } in material.textures() {
+        if texture >= scene.textures.len() || uv_set > 1 {
             return Err(Error::argument(format!(
                 "texture {texture} with texture coordinates {uv_set}; there are {} textures and sets 0 and 1",
                 scene.textures.len()
             )));
         }
     }
-    let numbers = [material.alpha, material.metallic, material.roughness, material.transmission, material.ior];
-    let finite = material.base_color.is_finite() && material.emission.is_finite();
+    let Material { alpha, metallic, roughness, transmission, ior, specular, .. } = material;
+    let numbers = [*alpha, *metallic, *roughness, *transmission, *ior, specular.strength];
+    let colours = [material.base_color, material.emission, specular.color];
+    let finite = colours.into_iter().all(Vec3::is_finite);
     if !finite || numbers.iter().any(|v| !v.is_finite()) || material.ior < 1.0 {
         return Err(Error::argument("its numbers must be finite and its index of refraction at least 1"));
     }

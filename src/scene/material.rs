@@ -1,4 +1,5 @@
-//! glTF 2.0 metallic-roughness materials, with transmission for thin panes and for solid glass.
+//! glTF 2.0 metallic-roughness materials, with transmission for thin panes and for solid glass, and with the strength
+//! and colour of the reflections of dielectrics.
 
 use glam::{Mat3, Vec3};
 
@@ -26,6 +27,24 @@ pub enum AlphaMode {
     Mask(f32),
     /// A surface point is present with the probability alpha; otherwise rays pass through it.
     Blend,
+}
+
+/// Strength and colour of the reflections of a dielectric (`KHR_materials_specular`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Specular {
+    /// Factor of the reflectance for all directions, in `[0, 1]`, multiplied by the alpha of `texture`.
+    pub strength: f32,
+    pub texture: Option<TextureRef>,
+    /// Factor of the reflectance at normal incidence, per channel, at least 0, multiplied by `color_texture`. The
+    /// product with the reflectance that follows from the index of refraction is limited to 1.
+    pub color: Vec3,
+    pub color_texture: Option<TextureRef>,
+}
+
+impl Default for Specular {
+    fn default() -> Self {
+        Self { strength: 1.0, texture: None, color: Vec3::ONE, color_texture: None }
+    }
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +76,8 @@ pub struct Material {
     pub transmission: f32,
     /// Index of refraction of the dielectric layer, at least 1; a layer of index 1 reflects nothing.
     pub ior: f32,
+    /// The renderer ignores it for the clear surface of solid glass.
+    pub specular: Specular,
     /// If positive, and `transmission` too, the meshes of this material bound solid bodies, which refract light and
     /// absorb it inside. If 0, they are thin panes. The renderer ignores the value otherwise, as the geometry states
     /// how thick the body is (`KHR_materials_volume`).
@@ -85,6 +106,7 @@ impl Default for Material {
             double_sided: false,
             transmission: 0.0,
             ior: 1.5,
+            specular: Specular::default(),
             thickness: 0.0,
             attenuation_color: Vec3::ONE,
             attenuation_distance: f32::INFINITY,
@@ -97,6 +119,19 @@ impl Material {
     /// layer.
     pub fn diffuse(name: &str, base_color: Vec3) -> Self {
         Self { name: name.into(), base_color, metallic: 0.0, ior: 1.0, double_sided: true, ..Self::default() }
+    }
+
+    /// Returns the references to textures.
+    pub fn textures(&self) -> impl Iterator<Item = TextureRef> {
+        let references = [
+            self.base_color_texture,
+            self.metallic_roughness_texture,
+            self.normal_texture,
+            self.emission_texture,
+            self.specular.texture,
+            self.specular.color_texture,
+        ];
+        references.into_iter().flatten()
     }
 
     /// Whether the surfaces of this material bound solid, transparent bodies.

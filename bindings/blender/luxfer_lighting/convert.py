@@ -129,13 +129,14 @@ def edited(glb: bytes, *changes: Callable[[dict[str, Any]], None] | None) -> byt
 
 
 def specular_levels(document: dict[str, Any]) -> None:
-    """Replaces the specular factors (KHR_materials_specular), which luxfer does not support, by the index of
-    refraction with equal reflectance at normal incidence."""
+    """Replaces the specular factors (KHR_materials_specular) by the index of refraction with equal reflectance at normal
+    incidence, as Cycles does: at grazing angles, the reflectance then stays 1. The colours of the reflections remain."""
     for material in document.get("materials", ()):
         extensions = material.get("extensions", {})
-        factor = extensions.get("KHR_materials_specular", {}).get("specularFactor")
-        if factor is None:
+        specular = extensions.get("KHR_materials_specular", {})
+        if "specularFactor" not in specular or "specularTexture" in specular:
             continue
+        factor = specular.pop("specularFactor")
         ior = extensions.get("KHR_materials_ior", {}).get("ior", 1.5)
         root = abs(ior - 1) / (ior + 1) * math.sqrt(factor)
         extensions["KHR_materials_ior"] = {"ior": (1 + root) / (1 - root)}

@@ -2,8 +2,10 @@
 //! conservation.
 
 use super::*;
+use crate::render::compiled_material::{self, PointValues};
 use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
+use crate::scene::{Material, Specular};
 use std::f32::consts::TAU;
 
 /// Parameters for three roughnesses, each with a metallic share of 0, 0.4 and 1. The last entry is purely diffuse.
@@ -19,11 +21,38 @@ fn all_bsdf_params() -> Vec<BsdfParams> {
                 roughness,
                 transmission: Vec3::ZERO,
                 dielectric_f0: 0.04,
+                dielectric_f90: 1.0,
             });
         }
     }
     all.push(matt(colour));
+    // A coloured reflection below full strength, with and without metal.
+    for metallic in [0.0, 0.4] {
+        let material = Material {
+            specular: Specular { strength: 0.7, color: Vec3::new(4.0, 1.0, 9.0), ..Specular::default() },
+            base_color: colour,
+            metallic,
+            roughness: 0.5,
+            ..Material::default()
+        };
+        all.push(compiled(&material));
+    }
     all
+}
+
+/// The parameters of a material without textures.
+fn compiled(material: &Material) -> BsdfParams {
+    compiled_material::bsdf_params(material, &PointValues::new(material))
+}
+
+/// A dielectric with the index of refraction 1.5 and a reflection of the given strength.
+fn dielectric(strength: f32, base_color: Vec3) -> Material {
+    Material {
+        specular: Specular { strength, ..Specular::default() },
+        base_color,
+        metallic: 0.0,
+        ..Material::default()
+    }
 }
 
 fn matt(colour: Vec3) -> BsdfParams {
@@ -34,6 +63,7 @@ fn matt(colour: Vec3) -> BsdfParams {
         roughness: 1.0,
         transmission: Vec3::ZERO,
         dielectric_f0: 0.0,
+        dielectric_f90: 0.0,
     }
 }
 
@@ -127,14 +157,74 @@ fn albedo(bsdf_params: &BsdfParams, view: f32, table: &AlbedoTable) -> (f64, f64
     (mean, ((squares / f64::from(n) - mean * mean).max(0.0) / f64::from(n)).sqrt())
 }
 
+/// Returns the directional albedo, integrated over the hemisphere by the midpoint rule.
+fn integrated_albedo(bsdf_params: &BsdfParams, view: f32, table: &AlbedoTable) -> f64 {
+    const STEPS: usize = 1000;
+    let bsdf = seen(bsdf_params, direction(view, 0.7), table);
+    let mut sum = 0.0;
+    for i in 0..STEPS * STEPS / 2 {
+        let cosine = ((i / STEPS) as f32 + 0.5) / (STEPS / 2) as f32;
+        let angle = ((i % STEPS) as f32 + 0.5) / STEPS as f32 * TAU;
+        sum += f64::from(bsdf.eval(direction(cosine, angle)).0.sum().x);
+    }
+    sum * f64::from(TAU) / (STEPS * STEPS / 2) as f64
+}
+
+#[test]
+fn the_albedo_of_samples_is_the_integral_of_the_bsdf() {
+    let table = AlbedoTable::new();
+    for (number, bsdf_params) in all_bsdf_params().iter().enumerate() {
+        for view in [0.95, 0.6, 0.15] {
+            let (mean, error) = albedo(bsdf_params, view, &table);
+            let expected = integrated_albedo(bsdf_params, view, &table);
+            let what = format!("bsdf_params {number}, view {view}: {mean} ± {error}, integral {expected}");
+            assert!((mean - expected).abs() < 4.5 * error + 1e-3 && expected < 1.01, "{what}");
+        }
+    }
+}
+
+#[test]
+fn the_specular_strength_is_a_factor_and_the_colour_tints_normal_incidence() {
+    let table = AlbedoTable::new();
+    let base = Vec3::new(0.9, 0.5, 0.2);
+    let mut rng = Rng::new(15, &[]);
+    for roughness in [0.1, 0.5, 1.0] {
+        let glossy = |specular: Specular, wo: Vec3, wi: Vec3| {
+            let material = Material { roughness, specular, ..dielectric(1.0, base) };
+            seen(&compiled(&material), wo, &table).eval(wi).0.glossy
+        };
+        let full = Specular::default();
+        for _ in 0..100 {
+            let wo = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
+            let wi = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
+            let (faint, whole) = (glossy(Specular { strength: 0.3, ..full }, wo, wi), glossy(full, wo, wi));
+            assert!((faint - whole * 0.3).abs().max_element() <= 1e-5 * whole.max_element(), "{faint} and {whole}");
+            // Light that returns to the viewer meets microfacets at normal incidence.
+            let color = Vec3::new(4.0, 1.0, 0.0);
+            let (tinted, whole) = (glossy(Specular { color, ..full }, wo, wo), glossy(full, wo, wo));
+            assert!((tinted - whole * color).abs().max_element() <= 1e-4 * whole.max_element(), "{tinted}");
+        }
+    }
+    // The reflectance is limited to 1.
+    let bright = Specular { color: Vec3::new(100.0, 1.0, 1.0), ..Specular::default() };
+    let bright = compiled(&Material { specular: bright, ..dielectric(1.0, base) });
+    assert_eq!((bright.f0.x, bright.f90, bright.dielectric_f0), (1.0, 1.0, 1.0));
+    // Without reflection, the material is matt, just like one with an index of refraction of 1.
+    for metallic in [0.0, 0.4] {
+        let none = compiled(&Material { metallic, ..dielectric(0.0, base) });
+        let matt = compiled(&Material { metallic, ior: 1.0, ..dielectric(1.0, base) });
+        assert_eq!((none.diffuse, none.f0, none.f90), (matt.diffuse, matt.f0, matt.f90));
+        assert_eq!((none.f90, none.dielectric_f90), (metallic, 0.0));
+    }
+}
+
 #[test]
 fn a_white_dielectric_loses_energy_only_between_its_facets() {
     // The diffuse layer reflects all light that the top layer does not reflect (Kelemen and Szirmay-Kalos 2001).
     let table = AlbedoTable::new();
     for roughness in [0.0, 0.0005, 0.05, 0.2, 0.6, 1.0] {
         for view in [1.0, 0.5, 0.1] {
-            let bsdf_params =
-                BsdfParams { f0: Vec3::splat(0.04), f90: 1.0, roughness, dielectric_f0: 0.04, ..matt(Vec3::ONE) };
+            let bsdf_params = compiled(&Material { roughness, ..dielectric(1.0, Vec3::ONE) });
             let albedo = albedo(&bsdf_params, view, &table).0;
             assert!((albedo - 1.0).abs() < 0.01, "roughness {roughness}, view {view}: {albedo}");
         }

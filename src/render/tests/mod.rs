@@ -15,6 +15,7 @@ mod irradiance;
 mod lamp_visibility;
 mod layers;
 mod luminaires;
+mod materials;
 mod parts;
 mod place;
 mod refusal;

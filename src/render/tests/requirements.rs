@@ -5,7 +5,7 @@ use super::*;
 
 /// Renders with and without the scene analysis. Returns the largest difference between corresponding values of the two
 /// images, relative to the mean of the image.
-fn difference(scene: Scene, camera: &Camera, samples: u32) -> f32 {
+pub fn difference(scene: Scene, camera: &Camera, samples: u32) -> f32 {
     let params = Params { width: 48, height: 32, samples, ..Params::default() };
     let mut world = world(scene);
     let analysed = render(&world, camera, &params).beauty;

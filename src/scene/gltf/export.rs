@@ -1,13 +1,13 @@
 //! Writes a scene as a single GLB file.
 
-use super::features::{IES, IS_POINT};
+use super::features::{IES, IS_POINT, SPECULAR};
 use super::material::transform_matrix;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::srgb_to_linear;
 use crate::image::io::{self, Encoding};
 use crate::maths;
 use crate::photometry::ies;
-use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, TextureRef, Wrap, c90};
+use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, Specular, TextureRef, Wrap, c90};
 use glam::{DMat3, DQuat, DVec3, Mat3, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
@@ -284,10 +284,38 @@ impl Writer {
         if material.ior != 1.5 {
             extend("KHR_materials_ior", json!({ "ior": material.ior }));
         }
+        if material.specular != Specular::default() {
+            let value = self.specular(scene, &material.specular)?;
+            self.uses(SPECULAR);
+            extensions.insert(SPECULAR.into(), value);
+        }
         if !extensions.is_empty() {
             out["extensions"] = extensions.into();
         }
         Ok(out)
+    }
+
+    fn specular(&mut self, scene: &Scene, specular: &Specular) -> Result<Value> {
+        let mut out = json!({ "specularFactor": specular.strength, "specularColorFactor": specular.color.to_array() });
+        let textures = [("specularTexture", specular.texture), ("specularColorTexture", specular.color_texture)];
+        self.textures_of(scene, &mut out, Encoding::Srgb, &textures)?;
+        Ok(out)
+    }
+
+    /// Adds references to textures to the JSON of a material extension.
+    fn textures_of(
+        &mut self,
+        scene: &Scene,
+        out: &mut Value,
+        encoding: Encoding,
+        textures: &[(&str, Option<TextureRef>)],
+    ) -> Result<()> {
+        for (key, reference) in textures {
+            if let Some(reference) = *reference {
+                out[*key] = self.texture(scene, reference, encoding, 1.0)?;
+            }
+        }
+        Ok(())
     }
 
     /// Writes a reference to a texture whose values are divided by `peak`.

@@ -19,12 +19,15 @@ pub const MESHOPT: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compress
 /// Extension for textures in WebP files.
 pub const WEBP: &str = "EXT_texture_webp";
 
+/// Extension for the strength and the colour of the reflections of dielectrics.
+pub const SPECULAR: &str = "KHR_materials_specular";
+
 /// Extension for materials of the specular-glossiness workflow.
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
 /// Extensions that this importer reads. A file that requires any other extension is refused. Of a material with
 /// variants, only the default variant is read.
-pub const READ: [&str; 16] = [
+pub const READ: [&str; 17] = [
     DRACO,
     IES,
     INSTANCING,
@@ -32,6 +35,7 @@ pub const READ: [&str; 16] = [
     MESHOPT[1],
     WEBP,
     GLOSSINESS,
+    SPECULAR,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -52,19 +56,21 @@ type Neutral = (&'static str, f64);
 
 /// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn the
 /// effect off if they have their default values. [convention: glTF extensions]
-const MATERIALS: [(&str, &str, &[Neutral]); 7] = [
+const MATERIALS: [(&str, &str, &[Neutral]); 6] = [
     ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
     ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),
     ("KHR_materials_diffuse_transmission", "no light passes diffusely", &[("diffuseTransmissionFactor", 0.0)]),
     ("KHR_materials_dispersion", "all wavelengths are refracted alike", &[("dispersion", 0.0)]),
     ("KHR_materials_iridescence", "thin films have no colours", &[("iridescenceFactor", 0.0)]),
     ("KHR_materials_sheen", "there is no sheen of cloth", &[("sheenColorFactor", 0.0)]),
-    (
-        "KHR_materials_specular",
-        "reflections have their usual strength and colour",
-        &[("specularFactor", 1.0), ("specularColorFactor", 1.0)],
-    ),
 ];
+
+/// Material extensions that are rendered, except for solid glass. The columns are those of [`MATERIALS`].
+const NOT_ON_SOLIDS: [(&str, &str, &[Neutral]); 1] = [(
+    SPECULAR,
+    "reflections of solid glass have their usual strength and colour",
+    &[("specularFactor", 1.0), ("specularColorFactor", 1.0)],
+)];
 
 /// The arrays of objects in the JSON, and the word by which a message names one object of each array.
 const LISTS: [(&str, &str); 10] = [
@@ -88,7 +94,10 @@ pub fn unrendered(document: &Value) -> Vec<Unrendered> {
             let place = || place(kind, index, object);
             extensions(&mut list, object, &place);
             match name {
-                "materials" => glossiness(&mut list, object, &place),
+                "materials" => {
+                    glossiness(&mut list, object, &place);
+                    solid(&mut list, object, &place);
+                }
                 "meshes" => mesh(&mut list, object, &place),
                 "nodes" => weights(&mut list, object, shown(document, object), &place),
                 "textures" => texture(&mut list, object, &place),
@@ -145,6 +154,21 @@ fn does_nothing(settings: &Value, neutral: &[Neutral]) -> bool {
     !neutral.is_empty()
         && neutral.iter().all(|&(key, wanted)| settings.get(key).is_none_or(|value| is(value, wanted)))
         && !(is_factor && has_texture())
+}
+
+/// Reports the extensions of the material of solid glass that are rendered for other materials only.
+fn solid(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> String) {
+    let settings = |name: &str| material.get("extensions").and_then(|extensions| extensions.get(name));
+    let factor = |name, key| settings(name).and_then(|settings| settings.get(key)?.as_f64()).unwrap_or(0.0);
+    if factor("KHR_materials_volume", "thicknessFactor") > 0.0
+        && factor("KHR_materials_transmission", "transmissionFactor") > 0.0
+    {
+        for (name, effect, neutral) in NOT_ON_SOLIDS {
+            if settings(name).is_some_and(|settings| !does_nothing(settings, neutral)) {
+                note(list, name, effect, place);
+            }
+        }
+    }
 }
 
 /// Reports a specular-glossiness material that cannot be converted to metallic-roughness.

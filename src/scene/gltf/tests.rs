@@ -3,7 +3,7 @@ use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 use crate::photometry::Luminaire;
 use crate::rng::Rng;
-use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Texture, TextureRef, Wrap};
+use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Specular, Texture, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3};
 use serde_json::{Value, json};
 use std::cell::Cell;
@@ -27,6 +27,12 @@ fn materials() -> Vec<Material> {
         normal_scale: 0.75,
         metallic_roughness_texture: Some(TextureRef::new(2)),
         roughness: 0.25,
+        specular: Specular {
+            strength: 0.75,
+            texture: Some(TextureRef { uv_set: 1, ..TextureRef::new(0) }),
+            color: Vec3::new(2.0, 1.0, 0.5),
+            color_texture: Some(TextureRef { transform: turned, ..TextureRef::new(0) }),
+        },
         ..Material::diffuse("Oak", Vec3::ONE)
     };
     let lamp = Material {
@@ -61,7 +67,7 @@ fn lights() -> Vec<PunctualLight> {
 
 /// A scene with one of each kind of object that glTF can represent.
 fn scene() -> Scene {
-    let colour = Image::from_fn(4, 2, |x, y| [x as f32 / 3.0, y as f32, 0.5, 1.0]).unwrap();
+    let colour = Image::from_fn(4, 2, |x, y| [x as f32 / 3.0, y as f32, 0.5, 1.0 - x as f32 / 6.0]).unwrap();
     let emission = Image::from_fn(4, 4, |x, y| [if (x + y) % 3 == 0 { 8.0 } else { 0.0 }, 2.0, 0.5]).unwrap();
     let normals = Image::from_fn(2, 2, |x, _| [0.5, 0.25 + 0.5 * x as f32, 1.0]).unwrap();
     let triangle = Mesh {
@@ -120,6 +126,8 @@ fn a_scene_is_unchanged_by_export_and_import() {
         assert_eq!((&a.name, a.alpha_mode, a.double_sided), (&b.name, b.alpha_mode, b.double_sided));
         let numbers = |m: &Material| [m.alpha, m.metallic, m.roughness, m.normal_scale, m.transmission, m.ior];
         assert_eq!((a.base_color, numbers(a)), (b.base_color, numbers(b)));
+        let specular = |m: &Material| (m.specular.strength, m.specular.color, m.specular.texture.map(|t| t.uv_set));
+        assert_eq!(specular(a), specular(b));
         let volume = |m: &Material| (m.thickness, m.attenuation_color, m.attenuation_distance);
         assert_eq!(volume(a), volume(b));
         // Compare products of texture and factor, because the export may divide a texture by its peak and multiply the
@@ -140,6 +148,8 @@ fn a_scene_is_unchanged_by_export_and_import() {
                 |m: &Material| m.base_color_texture,
                 |m: &Material| m.normal_texture,
                 |m: &Material| m.metallic_roughness_texture,
+                |m: &Material| m.specular.texture,
+                |m: &Material| m.specular.color_texture,
             ] {
                 if pick(b).is_some() {
                     assert!((look(&after, pick(a)) - look(&before, pick(b))).length() < 0.01);

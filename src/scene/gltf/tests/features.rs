@@ -105,14 +105,13 @@ fn valid_files_in_unusual_forms_are_read() {
 }
 
 /// The material extensions that are not rendered.
-const UNRENDERED_MATERIALS: [&str; 7] = [
+const UNRENDERED_MATERIALS: [&str; 6] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
     "KHR_materials_diffuse_transmission",
     "KHR_materials_dispersion",
     "KHR_materials_iridescence",
     "KHR_materials_sheen",
-    "KHR_materials_specular",
 ];
 
 #[test]
@@ -124,7 +123,6 @@ fn each_feature_that_is_not_rendered_is_named() {
         json!({ "dispersion": 0.1 }),
         json!({ "iridescenceFactor": 1.0 }),
         json!({ "sheenColorFactor": [0, 0, 0.5] }),
-        json!({ "specularColorTexture": { "index": 0 } }),
     ];
     for (name, settings) in UNRENDERED_MATERIALS.into_iter().zip(settings) {
         let texts = unrendered(|f| {
@@ -159,6 +157,72 @@ fn each_feature_that_is_not_rendered_is_named() {
         assert!(texts[0].starts_with(name) && texts[0].contains(place), "{}", texts[0]);
     }
     assert!(unrendered(|_| ()).is_empty());
+}
+
+/// Imports a triangle whose material has the extensions `extensions`. Texture 0 has one texel of the colour (0, 0, 0).
+fn with_extensions(extensions: Value) -> Result<Scene> {
+    let file = triangle_file(|f| {
+        let uri = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGNgYGAAAAAEAAH2FzhVAAAAAElFTkSuQmCC";
+        f["images"] = json!([{ "uri": uri }]);
+        f["textures"] = json!([{ "source": 0 }]);
+        f["extensionsRequired"] = json!(extensions.as_object().unwrap().keys().collect::<Vec<_>>());
+        f["materials"] = json!([{ "name": "Paint", "extensions": extensions }]);
+        f["meshes"][0]["primitives"][0]["material"] = json!(0);
+    });
+    import(&file, None)
+}
+
+/// Imports a material with one extension, all of whose settings must be rendered.
+fn with_extension(name: &str, settings: &Value) -> Material {
+    let scene = with_extensions(json!({ name: settings })).unwrap();
+    assert!(scene.unrendered.is_empty() && scene.validate().is_ok(), "{settings}");
+    scene.materials[0].clone()
+}
+
+#[test]
+fn specular_reflection_is_read_and_brought_into_range() {
+    let read = |settings: Value| with_extension("KHR_materials_specular", &settings).specular;
+    assert_eq!(read(json!({})), Specular::default());
+    let found = read(json!({ "specularFactor": 0.25, "specularColorFactor": [2, 0.5, 1.0] }));
+    assert_eq!(found, Specular { strength: 0.25, color: Vec3::new(2.0, 0.5, 1.0), ..Specular::default() });
+    let found = read(json!({ "specularFactor": 7, "specularColorFactor": [-1, 1e30, 0] }));
+    assert_eq!((found.strength, found.color.to_array()), (1.0, [0.0, crate::scene::MAX_LIGHT, 0.0]));
+    let transform = json!({ "KHR_texture_transform": { "scale": [2, 2] } });
+    let found = read(json!({
+        "specularTexture": { "index": 0, "texCoord": 1 },
+        "specularColorTexture": { "index": 0, "extensions": transform }
+    }));
+    assert_eq!(found.texture, Some(TextureRef { uv_set: 1, ..TextureRef::new(0) }));
+    assert_eq!(found.color_texture.map(|t| (t.texture, t.transform.x_axis.x)), Some((0, 2.0)));
+    for settings in [
+        json!({ "specularFactor": "much" }),
+        json!({ "specularColorFactor": [1, 2] }),
+        json!({ "specularTexture": 3 }),
+        json!({ "specularTexture": { "index": 1 } }),
+    ] {
+        let error = with_extensions(json!({ "KHR_materials_specular": settings })).unwrap_err();
+        assert!(error.kind == ErrorKind::Format && error.message.contains("aterial"), "{settings}: {error}");
+    }
+}
+
+/// The extensions of the layers of a material are rendered, but not on solid glass, where they are named.
+#[test]
+fn layers_of_solid_glass_are_named() {
+    for (name, settings, neutral) in
+        [("KHR_materials_specular", json!({ "specularColorTexture": { "index": 0 } }), json!({ "specularFactor": 1 }))]
+    {
+        let named = |thickness: f32, settings: &Value| {
+            let scene = with_extensions(json!({
+                name: settings,
+                "KHR_materials_volume": { "thicknessFactor": thickness },
+                "KHR_materials_transmission": { "transmissionFactor": 1 }
+            }));
+            scene.unwrap().unrendered.iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        let texts = named(0.5, &settings);
+        assert!(texts.len() == 1 && texts[0].starts_with(name) && texts[0].contains("\"Paint\""), "{texts:?}");
+        assert!(named(0.0, &settings).is_empty() && named(0.5, &neutral).is_empty());
+    }
 }
 
 #[test]
@@ -231,6 +295,7 @@ fn extensions_that_are_required_are_rendered_or_refused_by_name() {
         "EXT_texture_webp",
         "KHR_draco_mesh_compression",
         "KHR_materials_pbrSpecularGlossiness",
+        "KHR_materials_specular",
         "KHR_materials_variants",
         "KHR_mesh_quantization",
         "KHR_meshopt_compression",
