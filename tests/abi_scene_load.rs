@@ -8,14 +8,14 @@ use std::ffi::{CStr, CString, c_char};
 use std::path::PathBuf;
 use std::ptr::{null, null_mut};
 
-/// A glTF file with one triangle, `height` units high, whose material has a clear coat; and the content of its buffer,
+/// A glTF file with one triangle, `height` units high, whose material is anisotropic; and the content of its buffer,
 /// which the file expects at `uri`.
 fn gltf(height: f32, uri: &str) -> (String, Vec<u8>) {
     let numbers = [0.0, 0.0, 0.0, height, 0.0, 0.0, 0.0, height, 0.0];
     let bytes = numbers.iter().flat_map(|v: &f32| v.to_le_bytes()).collect();
     let file = format!(
         r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
-        "materials":[{{"name":"Paint","extensions":{{"KHR_materials_clearcoat":{{"clearcoatFactor":1}}}}}}],
+        "materials":[{{"name":"Paint","extensions":{{"KHR_materials_anisotropy":{{"anisotropyStrength":1}}}}}}],
         "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"material":0}}]}}],
         "buffers":[{{"uri":"{uri}","byteLength":36}}],"bufferViews":[{{"buffer":0,"byteLength":36}}],
         "accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}}]}}"#
@@ -94,7 +94,7 @@ fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
     );
     assert_eq!(found[0].1, 2700.0);
     assert!(found[0].2.contains("millimetre") && found[0].2.contains("unit = 0.001"), "{}", found[0].2);
-    assert!(found[1].2.contains("KHR_materials_clearcoat") && found[1].2.contains("\"Paint\""), "{}", found[1].2);
+    assert!(found[1].2.contains("KHR_materials_anisotropy") && found[1].2.contains("\"Paint\""), "{}", found[1].2);
     unsafe { assert_eq!(luxfer_release(scene.cast()), LUXFER_OK) };
 
     let params = luxfer_scene_load_params { unit: 0.001, ..params() };
@@ -107,7 +107,7 @@ fn a_scene_in_another_unit_is_noticed_and_can_be_scaled() {
         let status = luxfer_scene_get_requirements_text(scene, text.as_mut_ptr(), text.len(), null_mut());
         assert_eq!(status, LUXFER_OK, "{}", message(context));
         let text = CStr::from_ptr(text.as_ptr()).to_str().unwrap();
-        assert!(text.lines().any(|l| l.starts_with("KHR_materials_clearcoat: not rendered")), "{text}");
+        assert!(text.lines().any(|l| l.starts_with("KHR_materials_anisotropy: not rendered")), "{text}");
         assert_eq!(luxfer_release(scene.cast()), LUXFER_OK);
         assert_eq!(luxfer_release(context.cast()), LUXFER_OK);
     }

@@ -399,8 +399,8 @@ luxfer_status luxfer_scene_add_material(luxfer_scene *scene,
 
 /**
  * Replaces the values of a material by params, or by the defaults if params is NULL. The material keeps its textures,
- * and what params do not state (KHR_materials_specular), and also its name if params->name is NULL. To change single
- * values, read the material first. Any thread.
+ * and what params do not state (KHR_materials_specular and _clearcoat), and also its name if params->name is NULL. To
+ * change single values, read the material first. Any thread.
  * LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
  */
 luxfer_status luxfer_scene_set_material(luxfer_scene *scene,
@@ -901,6 +901,9 @@ luxfer_status luxfer_scene_intersect(luxfer_scene *scene,
 
 /** At least one body is solid glass, which refracts. */
 #define LUXFER_SCATTERING_REFRACTION 32
+
+/** At least one surface has a clear coat (KHR_materials_clearcoat). */
+#define LUXFER_SCATTERING_CLEAR_COAT 64
 
 /** At least one surface emits; the luminous openings of luminaires count. */
 #define LUXFER_LIGHTS_SURFACE 1

@@ -25,6 +25,8 @@ pub const LUXFER_SCATTERING_GLASS: u32 = 8;
 pub const LUXFER_SCATTERING_ALPHA: u32 = 16;
 /// At least one body is solid glass, which refracts.
 pub const LUXFER_SCATTERING_REFRACTION: u32 = 32;
+/// At least one surface has a clear coat (KHR_materials_clearcoat).
+pub const LUXFER_SCATTERING_CLEAR_COAT: u32 = 64;
 
 /// At least one surface emits; the luminous openings of luminaires count.
 pub const LUXFER_LIGHTS_SURFACE: u32 = 1;
@@ -98,7 +100,15 @@ pub unsafe extern "C" fn luxfer_scene_get_requirements(
         let found = world.requirements();
         let flags = |bits: &[bool]| bits.iter().zip(0..).map(|(&bit, i)| u32::from(bit) << i).sum();
         out.set(luxfer_requirements {
-            scattering: flags(&[found.diffuse, found.glossy, found.mirror, found.glass, found.alpha, found.refraction]),
+            scattering: flags(&[
+                found.diffuse,
+                found.glossy,
+                found.mirror,
+                found.glass,
+                found.alpha,
+                found.refraction,
+                found.clear_coat,
+            ]),
             lights: flags(&[
                 found.surfaces,
                 found.textured_surfaces,

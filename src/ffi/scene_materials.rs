@@ -162,8 +162,8 @@ pub unsafe extern "C" fn luxfer_scene_add_material(
 }
 
 /// Replaces the values of a material by params, or by the defaults if params is NULL. The material keeps its textures,
-/// and what params do not state (KHR_materials_specular), and also its name if params->name is NULL. To change single
-/// values, read the material first. Any thread.
+/// and what params do not state (KHR_materials_specular and _clearcoat), and also its name if params->name is NULL. To
+/// change single values, read the material first. Any thread.
 /// LUXFER_NOT_FOUND if there is no such material; LUXFER_INVALID_ARGUMENT if a value is out of range.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn luxfer_scene_set_material(
@@ -183,6 +183,7 @@ pub unsafe extern "C" fn luxfer_scene_set_material(
                 normal_texture: old.normal_texture,
                 emission_texture: old.emission_texture,
                 specular: old.specular,
+                coat: old.coat,
                 ..new
             };
             Ok(())

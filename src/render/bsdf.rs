@@ -9,18 +9,19 @@
 //! the incoming (ωi) or outgoing (ωo) direction, and Ē its cosine-weighted mean. A dielectric with an index of
 //! refraction of 1 has no top layer.
 //!
+//! Above the top layer may lie a clear coat ([`CoatLayer`]). For the diffuse layer, 1 - E(ω) is then the product of the
+//! shares that the coat and the top layer let through.
+//!
 //! The surface of a solid transparent body is another BSDF: a boundary that reflects and refracts ([`Dielectric`]).
 //!
 //! Not modelled: frosted panes, anisotropy, multiple scattering between microfacets.
 
+use super::clear_coat::{self, CoatLayer, CoatParams};
 use super::dielectric::{Dielectric, DielectricSample};
-use super::ggx::{self, AlbedoTable};
+use super::ggx::{self, AlbedoTable, MIRROR_ROUGHNESS};
 use super::medium::{Boundary, Media};
 use glam::{Vec2, Vec3};
 use std::f32::consts::FRAC_1_PI;
-
-/// A surface below this perceptual roughness is a perfect mirror. [convention]
-pub const MIRROR_ROUGHNESS: f32 = 1e-3;
 
 /// Smallest perceptual roughness at which neighbouring pixels may share a path vertex. On smoother surfaces, their
 /// slightly different view directions would see different highlights. At this roughness, the microfacets tilt by about
@@ -46,6 +47,7 @@ pub struct BsdfParams {
     /// transmitted light follows from it (`KHR_materials_specular`).
     pub dielectric_f0: f32,
     pub dielectric_f90: f32,
+    pub coat: CoatParams,
 }
 
 impl BsdfParams {
@@ -56,7 +58,22 @@ impl BsdfParams {
             return Vec3::ZERO;
         }
         let lost = ggx::schlick(Vec3::splat(self.dielectric_f0), self.dielectric_f90, cosine.abs()).x;
-        self.transmission * (1.0 - lost)
+        self.transmission * ((1.0 - lost) * self.coat.through(cosine.abs()))
+    }
+
+    /// Whether there is a layer besides the diffuse one.
+    pub fn is_layered(&self) -> bool {
+        self.f90 > 0.0 || self.transmission != Vec3::ZERO || self.coat.share > 0.0
+    }
+
+    /// Returns the reflectance plus the transmittance at normal incidence.
+    fn colour(&self) -> Vec3 {
+        let below = self.diffuse + (self.f0 + self.transmission);
+        if self.coat.share == 0.0 {
+            return below;
+        }
+        let coat = self.coat.share * clear_coat::F0;
+        below * (1.0 - coat) + Vec3::splat(coat)
     }
 }
 
@@ -97,7 +114,7 @@ pub struct Interface {
     pub roughness: f32,
 }
 
-/// The top layer (GGX or mirror), and the light that passes through the material in a straight line.
+/// The top layer (GGX or mirror), the clear coat, and the light that passes through the material in a straight line.
 struct SpecularLayers<'a> {
     bsdf_params: BsdfParams,
     /// The two tangents of the shading frame; its third axis is the shading normal.
@@ -105,14 +122,16 @@ struct SpecularLayers<'a> {
     wo: Vec3,
     /// Share of the light that passes through the material in a straight line towards the viewer.
     through: Vec3,
-    /// Selection probabilities of the diffuse layer and of the top layer. Transmission is selected with the remaining
-    /// probability.
-    shares: [f32; 2],
+    /// Selection probabilities of the diffuse layer, of the top layer and of the clear coat. Transmission is selected
+    /// with the remaining probability.
+    shares: [f32; 3],
     /// The GGX lobe and its directional albedo; `None` if the top layer is a mirror or absent.
     lobe: Option<(ggx::Lobe, TopAlbedo<'a>)>,
     /// (1 - E(ωo)) / (1 - Ē): the share of light that the top layer lets through to the viewer, divided by the
-    /// cosine-weighted mean of this share over all directions (see the module's documentation).
-    relative_coat_transmittance: f32,
+    /// cosine-weighted mean of this share over all directions (see the module's documentation). With a clear coat,
+    /// 1 - E includes its transmittance.
+    relative_transmittance: f32,
+    coat: Option<CoatLayer<'a>>,
 }
 
 /// The BSDF values of the diffuse and of the glossy lobe for one pair of directions. Each is multiplied by cos θi, the
@@ -210,12 +229,11 @@ impl<'a> Bsdf<'a> {
 
     /// Returns the reflectance plus the transmittance at normal incidence.
     pub fn colour(&self) -> Vec3 {
-        let above = match &self.layers {
-            BsdfLayers::Diffuse => Vec3::ZERO,
-            BsdfLayers::Specular(l) => l.bsdf_params.f0 + l.bsdf_params.transmission,
-            BsdfLayers::Boundary(l) => l.dielectric.colour(),
-        };
-        self.diffuse + above
+        match &self.layers {
+            BsdfLayers::Diffuse => self.diffuse,
+            BsdfLayers::Specular(l) => l.bsdf_params.colour(),
+            BsdfLayers::Boundary(l) => self.diffuse + l.dielectric.colour(),
+        }
     }
 
     /// Returns the media behind the boundary of a solid body; `None` for all other surfaces.
@@ -237,7 +255,10 @@ impl<'a> Bsdf<'a> {
             BsdfLayers::Boundary(_) => false,
             BsdfLayers::Specular(SpecularLayers { bsdf_params: s, .. }) => {
                 let is_rough = s.f90 == 0.0 || s.roughness >= SHAREABLE_ROUGHNESS;
-                is_rough && s.transmission == Vec3::ZERO && s.diffuse + s.f0 != Vec3::ZERO
+                let has_coat = s.coat.share > 0.0;
+                let is_coat_rough = !has_coat || s.coat.roughness >= SHAREABLE_ROUGHNESS;
+                let reflects = has_coat || s.diffuse + s.f0 != Vec3::ZERO;
+                is_rough && is_coat_rough && s.transmission == Vec3::ZERO && reflects
             }
         }
     }
@@ -260,7 +281,11 @@ impl<'a> Bsdf<'a> {
         match &self.layers {
             BsdfLayers::Diffuse => self.diffuse != Vec3::ZERO,
             BsdfLayers::Boundary(layer) => layer.dielectric.is_rough(),
-            BsdfLayers::Specular(layers) => layers.shares[0] > 0.0 || (layers.shares[1] > 0.0 && layers.lobe.is_some()),
+            BsdfLayers::Specular(layers) => {
+                let [diffuse, top, coat] = layers.shares;
+                let is_coat_rough = || layers.coat.as_ref().is_some_and(|coat| !coat.is_mirror());
+                diffuse > 0.0 || (top > 0.0 && layers.lobe.is_some()) || (coat > 0.0 && is_coat_rough())
+            }
         }
     }
 
@@ -342,7 +367,7 @@ impl<'a> SpecularLayers<'a> {
         let (t, b) = normal.any_orthonormal_pair();
         let wo = to_local(&[t, b, normal], wo);
         // Compute two albedos for the direction of the viewer. `top` is the largest channel of the top layer's albedo.
-        // `coat_albedo` is the albedo that the top layer would have without its metallic component.
+        // `dielectric` is the albedo that the top layer would have without its metallic component.
         let has_top = s.f90 > 0.0;
         let lobe = match table {
             Some(table) if has_top && s.roughness >= MIRROR_ROUGHNESS => {
@@ -350,24 +375,51 @@ impl<'a> SpecularLayers<'a> {
             }
             _ => None,
         };
-        let (mut top, mut coat_albedo, mut mean_coat_albedo) = (0.0, 0.0, 0.0);
+        let (mut top, mut dielectric, mut mean_dielectric) = (0.0, 0.0, 0.0);
         if let Some((_, albedo)) = &lobe {
             let share = albedo.row.directional(wo.z);
-            (top, coat_albedo) = (s.f0.max_element() * share.x + s.f90 * share.y, albedo.of(share));
-            mean_coat_albedo = albedo.of(albedo.row.average());
+            (top, dielectric) = (s.f0.max_element() * share.x + s.f90 * share.y, albedo.of(share));
+            mean_dielectric = albedo.of(albedo.row.average());
         } else if has_top {
             top = ggx::schlick(s.f0, s.f90, wo.z).max_element();
-            coat_albedo = ggx::schlick(Vec3::splat(s.dielectric_f0), s.dielectric_f90, wo.z).x;
+            dielectric = ggx::schlick(Vec3::splat(s.dielectric_f0), s.dielectric_f90, wo.z).x;
             // The mean of Schlick's factor (1 - cos θ)⁵, weighted by the cosine over the hemisphere, is 1/21.
-            mean_coat_albedo = s.dielectric_f0 + (s.dielectric_f90 - s.dielectric_f0) / 21.0;
+            mean_dielectric = s.dielectric_f0 + (s.dielectric_f90 - s.dielectric_f0) / 21.0;
         }
-        let relative_coat_transmittance = (1.0 - coat_albedo).max(0.0) / (1.0 - mean_coat_albedo).max(1e-3);
+        let relative_transmittance = (1.0 - dielectric).max(0.0) / (1.0 - mean_dielectric).max(1e-3);
         // Set the probability of each layer in proportion to its albedo.
-        let diffuse = s.diffuse.max_element() * (1.0 - coat_albedo);
+        let diffuse = s.diffuse.max_element() * (1.0 - dielectric);
         let through = s.through(upright);
-        let sum = diffuse + top + through.max_element();
-        let shares = if sum > 0.0 { [diffuse / sum, top / sum] } else { [0.0; 2] };
-        Self { bsdf_params: *s, tangents: [t, b], wo, through, shares, lobe, relative_coat_transmittance }
+        let mut layers = Self {
+            bsdf_params: *s,
+            tangents: [t, b],
+            wo,
+            through,
+            shares: [0.0; 3],
+            lobe,
+            relative_transmittance,
+            coat: None,
+        };
+        let mut albedos = [diffuse, top, 0.0];
+        if let Some(coat) = CoatLayer::new(&s.coat, wo, table) {
+            albedos = layers.cover(coat, albedos);
+        }
+        let sum = albedos[0] + albedos[1] + through.max_element() + albedos[2];
+        if sum > 0.0 {
+            layers.shares = albedos.map(|albedo| albedo / sum);
+        }
+        layers
+    }
+
+    /// Adds a clear coat. Takes the albedos of the diffuse and of the top layer without the coat; returns these below
+    /// the coat, and that of the coat.
+    #[inline(never)]
+    fn cover(&mut self, coat: CoatLayer<'a>, [diffuse, top, _]: [f32; 3]) -> [f32; 3] {
+        let (passed, albedo) = (1.0 - coat.albedo, coat.albedo);
+        let transmittance = |cosine: f32| (1.0 - self.dielectric_albedo(cosine)).max(0.0) * coat.transmittance(cosine);
+        self.relative_transmittance = transmittance(self.wo.z) / cosine_mean(transmittance).max(1e-3);
+        self.coat = Some(coat);
+        [diffuse * passed, top * passed, albedo]
     }
 
     fn eval(&self, direction: Vec3, cosine: f32) -> (Lobes, f32) {
@@ -376,9 +428,12 @@ impl<'a> SpecularLayers<'a> {
             return (lobes, pdf);
         }
         let s = &self.bsdf_params;
-        let [diffuse, top] = self.shares;
+        let [diffuse, top, coat] = self.shares;
         if diffuse > 0.0 {
-            let transmittance = self.relative_coat_transmittance * (1.0 - self.coat_albedo(cosine)).max(0.0);
+            let mut transmittance = self.relative_transmittance * (1.0 - self.dielectric_albedo(cosine)).max(0.0);
+            if let Some(coat) = &self.coat {
+                transmittance *= coat.transmittance(cosine);
+            }
             lobes.diffuse = s.diffuse * (transmittance * cosine * FRAC_1_PI);
             pdf += diffuse * cosine * FRAC_1_PI;
         }
@@ -392,12 +447,21 @@ impl<'a> SpecularLayers<'a> {
             lobes.glossy = ggx::schlick(s.f0, s.f90, self.wo.dot(h)) * value;
             pdf += top * chosen;
         }
+        if let Some(layer) = &self.coat {
+            lobes.glossy *= layer.attenuation(cosine);
+            let [t, b] = self.tangents;
+            let wi = Vec3::new(direction.dot(t), direction.dot(b), cosine);
+            if let Some((value, chosen)) = layer.eval(wi, (self.wo + wi).normalize_or(Vec3::Z)) {
+                lobes.glossy += Vec3::splat(value);
+                pdf += coat * chosen;
+            }
+        }
         (lobes, pdf)
     }
 
     /// Returns the albedo of the dielectric top layer for a direction; `cosine` is the cosine of its angle to the
     /// normal.
-    fn coat_albedo(&self, cosine: f32) -> f32 {
+    fn dielectric_albedo(&self, cosine: f32) -> f32 {
         let s = &self.bsdf_params;
         match &self.lobe {
             Some((_, albedo)) => albedo.of(albedo.row.directional(cosine)),
@@ -407,7 +471,7 @@ impl<'a> SpecularLayers<'a> {
     }
 
     fn sample(&self, bsdf: &Bsdf, u: Vec2) -> Option<BsdfSample> {
-        let [diffuse, top] = self.shares;
+        let [diffuse, top, coat] = self.shares;
         let frame = [self.tangents[0], self.tangents[1], bsdf.normal];
         // Rescale the interval of `u.x` that selected the layer to `[0, 1)`, and reuse the result to sample the
         // direction.
@@ -415,8 +479,19 @@ impl<'a> SpecularLayers<'a> {
         let local = if u.x < diffuse {
             cosine_hemisphere(part(0.0, diffuse))
         } else if u.x < diffuse + top {
-            let Some((lobe, _)) = &self.lobe else { return self.reflect(&frame, bsdf.geometric) };
+            let Some((lobe, _)) = &self.lobe else {
+                let below = self.coat.as_ref().map_or(1.0, |coat| 1.0 - coat.albedo);
+                let reflectance = ggx::schlick(self.bsdf_params.f0, self.bsdf_params.f90, self.wo.z);
+                return self.reflect(&frame, bsdf.geometric, reflectance * below / top);
+            };
             let h = lobe.sample_normal(part(diffuse, top));
+            h * (2.0 * self.wo.dot(h)) - self.wo
+        } else if let Some(layer) = &self.coat
+            && u.x < diffuse + top + coat
+        {
+            let Some(h) = layer.sample_normal(part(diffuse + top, coat)) else {
+                return self.reflect(&frame, bsdf.geometric, Vec3::splat(layer.albedo / coat));
+            };
             h * (2.0 * self.wo.dot(h)) - self.wo
         } else {
             return self.pass_through(&frame);
@@ -424,20 +499,33 @@ impl<'a> SpecularLayers<'a> {
         bsdf.non_specular(from_local(&frame, local))
     }
 
-    fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3) -> Option<BsdfSample> {
+    fn reflect(&self, frame: &[Vec3; 3], geometric: Vec3, weight: Vec3) -> Option<BsdfSample> {
         let direction = from_local(frame, Vec3::new(-self.wo.x, -self.wo.y, self.wo.z));
-        let weight = ggx::schlick(self.bsdf_params.f0, self.bsdf_params.f90, self.wo.z) / self.shares[1];
         let scattered = BsdfSample { direction, weight, lobes: Lobes::NONE, kind: ScatterKind::Mirror };
         (direction.dot(geometric) > 0.0).then_some(scattered)
     }
 
     fn pass_through(&self, frame: &[Vec3; 3]) -> Option<BsdfSample> {
-        let share = 1.0 - self.shares[0] - self.shares[1];
+        let share = 1.0 - self.shares[0] - self.shares[1] - self.shares[2];
         let direction = -from_local(frame, self.wo);
         let scattered =
             BsdfSample { direction, weight: self.through / share, lobes: Lobes::NONE, kind: ScatterKind::Pane };
         (share > 0.0 && self.through != Vec3::ZERO).then_some(scattered)
     }
+}
+
+/// Returns the cosine-weighted mean of a function of the cosine over the hemisphere: 2 ∫₀¹ f(c) c dc, by Simpson's
+/// rule.
+fn cosine_mean(f: impl Fn(f32) -> f32) -> f32 {
+    // Number of intervals. For the transmittance of a smooth coat over a smooth dielectric, the error is below 1e-5.
+    // [rounding]
+    const STEPS: usize = 16;
+    let value = |i: usize| {
+        let cosine = i as f32 / (2 * STEPS) as f32;
+        f(cosine) * cosine
+    };
+    let sum: f32 = (0..STEPS).map(|i| value(2 * i) + 4.0 * value(2 * i + 1) + value(2 * i + 2)).sum();
+    sum / (3 * STEPS) as f32
 }
 
 /// The directional albedo of a rough dielectric top layer, looked up in the albedo table.

@@ -1,6 +1,7 @@
 //! Materials prepared for path tracing: parameters that do not vary with a texture are computed once per material.
 
 use super::bsdf::BsdfParams;
+use super::clear_coat::CoatParams;
 use super::medium;
 use crate::maths;
 use crate::scene::Material;
@@ -36,6 +37,7 @@ impl CompiledMaterial {
             transmission: Vec3::ZERO,
             dielectric_f0: 0.0,
             dielectric_f90: 0.0,
+            coat: CoatParams::NONE,
         },
         is_textured: false,
         layered: false,
@@ -68,6 +70,7 @@ pub struct PointValues {
     /// Strength and colour of the reflections of the dielectric component.
     pub specular: f32,
     pub specular_color: Vec3,
+    pub coat: CoatParams,
 }
 
 impl PointValues {
@@ -79,12 +82,13 @@ impl PointValues {
             roughness: material.roughness,
             specular: material.specular.strength,
             specular_color: material.specular.color,
+            coat: CoatParams { share: material.coat.strength, roughness: material.coat.roughness },
         }
     }
 }
 
-/// Converts the values of a material at a surface point to the parameters of the layers (glTF 2.0, appendix B.2, and
-/// `KHR_materials_specular`).
+/// Converts the values of a material at a surface point to the parameters of the layers (glTF 2.0, appendix B.2,
+/// `KHR_materials_specular` and `KHR_materials_clearcoat`).
 pub fn bsdf_params(material: &Material, values: &PointValues) -> BsdfParams {
     layers(material, material.transmission, values)
 }
@@ -106,6 +110,7 @@ fn layers(material: &Material, transmission: f32, values: &PointValues) -> BsdfP
         transmission: base * ((1.0 - metallic) * transmission),
         dielectric_f0: dielectric_f0.max_element(),
         dielectric_f90: if has_interface { specular } else { metallic },
+        coat: CoatParams { share: values.coat.share.clamp(0.0, 1.0), roughness: values.coat.roughness.clamp(0.0, 1.0) },
     }
 }
 

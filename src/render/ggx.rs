@@ -7,6 +7,9 @@ use crate::maths;
 use glam::{Vec2, Vec3};
 use std::f32::consts::{FRAC_PI_4, PI};
 
+/// A surface below this perceptual roughness is a perfect mirror. [convention]
+pub const MIRROR_ROUGHNESS: f32 = 1e-3;
+
 /// Returns the Fresnel reflectance by Schlick's approximation, from the reflectance at normal (`f0`) and at grazing
 /// (`f90`) incidence.
 #[inline]

@@ -28,6 +28,7 @@ mod aov;
 mod ballot;
 mod bounds;
 mod bsdf;
+mod clear_coat;
 mod compiled_material;
 mod contribution;
 pub mod denoise;

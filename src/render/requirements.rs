@@ -6,9 +6,10 @@
 //! The number of bounces that carry nearly all light ([`Requirements::bounces`]) is only reported: paths end by Russian
 //! roulette, not after this number of bounces.
 
-use super::bsdf::{BsdfParams, MIRROR_ROUGHNESS};
+use super::bsdf::BsdfParams;
+use super::clear_coat::CoatParams;
 use super::compiled_material::{self, CompiledMaterial, PointValues, SolidParams};
-use super::ggx::{self, AlbedoTable};
+use super::ggx::{self, AlbedoTable, MIRROR_ROUGHNESS};
 use super::medium;
 use crate::maths;
 use crate::scene::{AlphaMode, Environment, Material, Mesh, PunctualLight, Scene, TextureRef};
@@ -25,6 +26,8 @@ pub struct Requirements {
     pub glass: bool,
     /// Whether the scene has solid glass, which refracts.
     pub refraction: bool,
+    /// Whether a surface has a clear coat.
+    pub clear_coat: bool,
     /// Whether a surface has an opacity below 1.
     pub alpha: bool,
     pub normal_maps: bool,
@@ -117,6 +120,10 @@ impl Requirements {
                 "{meshes} closed and transparent, of a material without thickness: light goes straight on through, and \
                  is not bent."
             ));
+        }
+        if self.clear_coat {
+            sentences
+                .push("Clear coats reflect, but do not absorb, and no light goes back and forth below them.".into());
         }
         self.name_limits_of_solids(&mut sentences);
         if let Some(material) = self.frosted {
@@ -221,6 +228,8 @@ pub fn analyse(scene: &Scene, table: Option<&AlbedoTable>) -> (Requirements, Vec
             normals: range(&material.normal_texture),
             specular: range(&material.specular.texture),
             specular_color: range(&material.specular.color_texture),
+            coat: range(&material.coat.texture),
+            coat_roughness: range(&material.coat.roughness_texture),
         };
         let compiled = compile_material(material, &texels);
         compiled_materials.push(compiled);
@@ -260,6 +269,8 @@ fn mark_varied_textures(material: &Material, compiled: &CompiledMaterial, ranges
         (&material.emission_texture, material.emission.max_element() > 0.0),
         (&material.specular.texture, compiled.is_textured),
         (&material.specular.color_texture, compiled.is_textured),
+        (&material.coat.texture, compiled.is_textured),
+        (&material.coat.roughness_texture, compiled.is_textured),
     ] {
         if let Some(t) = texture {
             varied[t.texture] |= counts && !ranges[t.texture].is_constant();
@@ -378,6 +389,11 @@ impl Requirements {
         self.glass |= s.transmission != Vec3::ZERO;
         self.mirror |= s.f90 > 0.0 && s.roughness < MIRROR_ROUGHNESS;
         self.glossy |= s.f90 > 0.0 && s.roughness >= MIRROR_ROUGHNESS;
+        if s.coat.share > 0.0 {
+            self.clear_coat = true;
+            self.mirror |= s.coat.is_mirror();
+            self.glossy |= !s.coat.is_mirror();
+        }
     }
 }
 
@@ -404,10 +420,12 @@ struct TexelRanges {
     normals: Range,
     specular: Range,
     specular_color: Range,
+    coat: Range,
+    coat_roughness: Range,
 }
 
 fn compile_material(material: &Material, texels: &TexelRanges) -> CompiledMaterial {
-    let TexelRanges { base, layers, normals, specular, specular_color } = texels;
+    let TexelRanges { base, layers, normals, specular, specular_color, coat, coat_roughness } = texels;
     let min_alpha = (material.alpha * base.low.w).min(material.alpha * base.high.w);
     let has_alpha = match material.alpha_mode {
         AlphaMode::Opaque => false,
@@ -428,11 +446,17 @@ fn compile_material(material: &Material, texels: &TexelRanges) -> CompiledMateri
         roughness: plain.roughness * layers.high.y,
         specular: plain.specular * specular.high.w,
         specular_color: plain.specular_color * specular_color.high.truncate(),
+        coat: CoatParams {
+            share: plain.coat.share * coat.high.x,
+            roughness: plain.coat.roughness * coat_roughness.high.y,
+        },
     };
+    let coat_varies =
+        plain.coat.share > 0.0 && (coat.low.x, coat_roughness.low.y) != (coat.high.x, coat_roughness.high.y);
     CompiledMaterial {
         bsdf_params: compiled_material::bsdf_params(material, &values),
-        is_textured: base_varies || layers_vary || specular_varies,
-        layered: material.is_solid() || extremes(material, texels).any(|s| s.f90 > 0.0 || s.transmission != Vec3::ZERO),
+        is_textured: base_varies || layers_vary || specular_varies || coat_varies,
+        layered: material.is_solid() || extremes(material, texels).any(|s| s.is_layered()),
         has_normal_map: material.normal_texture.is_some() && !is_neutral,
         has_alpha,
         lets_light_through: has_alpha || (material.transmission > 0.0 && !material.is_solid()),
@@ -441,12 +465,12 @@ fn compile_material(material: &Material, texels: &TexelRanges) -> CompiledMateri
 }
 
 /// Returns the BSDF parameters of a material, with its largest colours, for all combinations of its smallest or largest
-/// metalness, roughness and specular strength. All parameters of the layers are linear or monotone in these values, so
-/// their extremes are among these combinations. The attenuation of the diffuse layer is that of the smallest specular
-/// colour.
-fn extremes<'a>(material: &'a Material, texels: &'a TexelRanges) -> impl Iterator<Item = BsdfParams> + 'a {
+/// metalness, roughness, specular strength and coat. All parameters of the layers are linear or monotone in these
+/// values, so their extremes are among these combinations. The attenuation of the diffuse layer is that of the smallest
+/// specular colour.
+fn extremes(material: &Material, texels: &TexelRanges) -> impl Iterator<Item = BsdfParams> {
     let least = material.specular.color * texels.specular_color.low.truncate();
-    extreme_values(material, texels).map(move |values| {
+    extreme_values(material, texels).into_iter().map(move |values| {
         let faint = PointValues { specular_color: values.specular_color.min(least), ..values };
         let dielectric_f0 = compiled_material::bsdf_params(material, &faint).dielectric_f0;
         BsdfParams { dielectric_f0, ..compiled_material::bsdf_params(material, &values) }
@@ -454,43 +478,39 @@ fn extremes<'a>(material: &'a Material, texels: &'a TexelRanges) -> impl Iterato
 }
 
 /// Returns the parameters of the material of solid bodies for the same combinations as [`extremes`].
-fn solid_extremes<'a>(
-    material: &'a Material,
-    texels: &'a TexelRanges,
-) -> impl Iterator<Item = SolidParams> + Clone + 'a {
-    extreme_values(material, texels).map(move |values| compiled_material::solid_params(material, &values))
+fn solid_extremes(material: &Material, texels: &TexelRanges) -> impl Iterator<Item = SolidParams> + Clone {
+    let values = extreme_values(material, texels).into_iter();
+    values.map(move |values| compiled_material::solid_params(material, &values))
 }
 
 /// Returns the largest colours of a material with each combination of the extremes of its other values.
-fn extreme_values<'a>(
-    material: &'a Material,
-    texels: &'a TexelRanges,
-) -> impl Iterator<Item = PointValues> + Clone + 'a {
+fn extreme_values(material: &Material, texels: &TexelRanges) -> Vec<PointValues> {
     let plain = PointValues::new(material);
     let largest = |colour: Vec3, range: &Range| (colour * range.low.truncate()).max(colour * range.high.truncate());
     let base = largest(plain.base, &texels.base);
     let specular_color = largest(plain.specular_color, &texels.specular_color);
-    let metallic = ends(plain.metallic, texels.layers.low.z, texels.layers.high.z);
-    let roughness = ends(plain.roughness, texels.layers.low.y, texels.layers.high.y);
-    let specular = ends(plain.specular, texels.specular.low.w, texels.specular.high.w);
-    let values = move |metallic: f32, roughness: f32, specular: f32| PointValues {
-        base,
-        metallic,
-        roughness,
-        specular,
-        specular_color,
-    };
-    metallic.flat_map(move |m| {
-        let specular = specular.clone();
-        roughness.clone().flat_map(move |r| specular.clone().map(move |s| values(m, r, s)))
-    })
+    let mut all = vec![PointValues { base, specular_color, ..plain }];
+    let TexelRanges { layers, specular, coat, coat_roughness, .. } = texels;
+    let with = &mut all;
+    with_both(with, plain.metallic, [layers.low.z, layers.high.z], |values| &mut values.metallic);
+    with_both(with, plain.roughness, [layers.low.y, layers.high.y], |values| &mut values.roughness);
+    with_both(with, plain.specular, [specular.low.w, specular.high.w], |values| &mut values.specular);
+    with_both(with, plain.coat.share, [coat.low.x, coat.high.x], |values| &mut values.coat.share);
+    let texels = [coat_roughness.low.y, coat_roughness.high.y];
+    with_both(with, plain.coat.roughness, texels, |values| &mut values.coat.roughness);
+    all
 }
 
-/// Returns the smallest and the largest product of a factor with a texel in `[low, high]`; only one number if they are
-/// equal.
-fn ends(factor: f32, low: f32, high: f32) -> impl Iterator<Item = f32> + Clone {
-    let (a, b) = (factor * low, factor * high);
-    std::iter::once(a.min(b)).chain((a != b).then_some(a.max(b)))
+/// Replaces each entry by two: with the products of a factor with the smallest and the largest texel. `place` tells the
+/// number to set.
+fn with_both(all: &mut Vec<PointValues>, factor: f32, texels: [f32; 2], place: fn(&mut PointValues) -> &mut f32) {
+    let [a, b] = texels.map(|texel| factor * texel);
+    all.iter_mut().for_each(|values| *place(values) = a);
+    if a != b {
+        let mut others = all.clone();
+        others.iter_mut().for_each(|values| *place(values) = b);
+        all.append(&mut others);
+    }
 }
 
 /// Returns the largest albedo, over all directions of incidence, with the BSDF parameters `s`. The result may be up to
@@ -513,7 +533,13 @@ fn albedo_bound(s: &BsdfParams, table: Option<&AlbedoTable>) -> Vec3 {
                 (ggx::schlick(s.f0, s.f90, cosine), ggx::schlick(dielectric_f0, s.dielectric_f90, cosine).x)
             }
         };
-        bound = bound.max(s.diffuse * (1.0 - taken) + top + s.through(cosine));
+        let mut albedo = s.diffuse * (1.0 - taken) + top + s.through(cosine);
+        if s.coat.share > 0.0 {
+            // `through` is already that below the coat.
+            let coat = s.coat.albedo(cosine, table);
+            albedo = Vec3::splat(coat) + (s.diffuse * (1.0 - taken) + top) * (1.0 - coat) + s.through(cosine);
+        }
+        bound = bound.max(albedo);
     }
     bound.min(Vec3::ONE)
 }

@@ -60,6 +60,12 @@ impl<'w> TextureContext<'w> {
         if let Some(texture) = &material.specular.color_texture {
             values.specular_color *= self.look_up(texture).truncate();
         }
+        if let Some(texture) = &material.coat.texture {
+            values.coat.share *= self.look_up(texture).x;
+        }
+        if let Some(texture) = &material.coat.roughness_texture {
+            values.coat.roughness *= self.look_up(texture).y;
+        }
         values
     }
 

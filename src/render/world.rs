@@ -89,7 +89,7 @@ impl World {
         let (low, high) = accel.bounds();
         let lights = Lights::build(&scene, emitters, pieces, centre, (high - low).length() / 2.0)?;
         // Find out which shading features the scene requires.
-        let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0;
+        let has_top = |m: &Material| m.ior > 1.0 || m.metallic > 0.0 || m.coat.strength > 0.0;
         let albedo_table = scene.materials.iter().any(has_top).then(AlbedoTable::new);
         let (mut requirements, mut compiled_materials) = requirements::analyse(&scene, albedo_table.as_ref());
         let (media, numbers) = medium::number(&scene.materials)?;
@@ -551,8 +551,9 @@ fn check_material(scene: &Scene, material: &Material) -> Result<()> {
             )));
         }
     }
-    let Material { alpha, metallic, roughness, transmission, ior, specular, .. } = material;
-    let numbers = [*alpha, *metallic, *roughness, *transmission, *ior, specular.strength];
+    let Material { alpha, metallic, roughness, transmission, ior, specular, coat, .. } = material;
+    let numbers =
+        [*alpha, *metallic, *roughness, *transmission, *ior, specular.strength, coat.strength, coat.roughness];
     let colours = [material.base_color, material.emission, specular.color];
     let finite = colours.into_iter().all(Vec3::is_finite);
     if !finite || numbers.iter().any(|v| !v.is_finite()) || material.ior < 1.0 {

@@ -1,5 +1,5 @@
 //! glTF 2.0 metallic-roughness materials, with transmission for thin panes and for solid glass, and with the strength
-//! and colour of the reflections of dielectrics.
+//! and colour of the reflections of dielectrics, and with a clear coat.
 
 use glam::{Mat3, Vec3};
 
@@ -47,6 +47,17 @@ impl Default for Specular {
     }
 }
 
+/// A clear layer with an index of refraction of 1.5 on top of a material (`KHR_materials_clearcoat`).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ClearCoat {
+    /// Share of the surface that the coat covers, in `[0, 1]`, multiplied by the red channel of `texture`.
+    pub strength: f32,
+    pub texture: Option<TextureRef>,
+    /// Perceptual roughness in `[0, 1]`, multiplied by the green channel of `roughness_texture`.
+    pub roughness: f32,
+    pub roughness_texture: Option<TextureRef>,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     pub name: String,
@@ -78,6 +89,9 @@ pub struct Material {
     pub ior: f32,
     /// The renderer ignores it for the clear surface of solid glass.
     pub specular: Specular,
+    /// Has the normals of `normal_texture`, as all layers. The renderer ignores it for the clear surface of solid
+    /// glass.
+    pub coat: ClearCoat,
     /// If positive, and `transmission` too, the meshes of this material bound solid bodies, which refract light and
     /// absorb it inside. If 0, they are thin panes. The renderer ignores the value otherwise, as the geometry states
     /// how thick the body is (`KHR_materials_volume`).
@@ -107,6 +121,7 @@ impl Default for Material {
             transmission: 0.0,
             ior: 1.5,
             specular: Specular::default(),
+            coat: ClearCoat::default(),
             thickness: 0.0,
             attenuation_color: Vec3::ONE,
             attenuation_distance: f32::INFINITY,
@@ -130,6 +145,8 @@ impl Material {
             self.emission_texture,
             self.specular.texture,
             self.specular.color_texture,
+            self.coat.texture,
+            self.coat.roughness_texture,
         ];
         references.into_iter().flatten()
     }

@@ -21,7 +21,7 @@ mod warnings;
 
 pub use camera::Camera;
 pub use light::{Environment, MAX_LIGHT, PunctualLight, c90, check_light};
-pub use material::{AlphaMode, Material, Specular, TextureRef};
+pub use material::{AlphaMode, ClearCoat, Material, Specular, TextureRef};
 pub use mesh::Mesh;
 pub use texture::{Texture, Wrap, texel_at};
 pub use unrendered::Unrendered;

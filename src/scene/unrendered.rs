@@ -10,7 +10,7 @@ const MAX_NAMED: usize = 3;
 pub struct Unrendered {
     /// Name of the glTF extension, or words for a feature of glTF itself.
     pub feature: String,
-    /// The visible consequence, such as "there is no clear coat".
+    /// The visible consequence, such as "reflections are not stretched".
     pub effect: &'static str,
     /// Names of the first `MAX_NAMED` objects that have the feature.
     pub named: Vec<String>,

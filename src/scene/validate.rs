@@ -78,6 +78,8 @@ impl Scene {
         check_range("transmission", material.transmission, 0.0, 1.0)?;
         check_range("ior", material.ior, 1.0, f32::MAX)?;
         check_range("specular.strength", material.specular.strength, 0.0, 1.0)?;
+        check_range("coat.strength", material.coat.strength, 0.0, 1.0)?;
+        check_range("coat.roughness", material.coat.roughness, 0.0, 1.0)?;
         check_light("specular.color", material.specular.color)?;
         check_range("thickness", material.thickness, 0.0, f32::MAX)?;
         check_colour("attenuation_color", material.attenuation_color)?;
@@ -88,6 +90,8 @@ impl Scene {
         self.check_reference("metallic_roughness_texture", material.metallic_roughness_texture)?;
         self.check_reference("normal_texture", material.normal_texture)?;
         self.check_reference("emission_texture", material.emission_texture)?;
+        self.check_reference("coat.texture", material.coat.texture)?;
+        self.check_reference("coat.roughness_texture", material.coat.roughness_texture)?;
         self.check_reference("specular.texture", material.specular.texture)?;
         self.check_reference("specular.color_texture", material.specular.color_texture)?;
         match material.emission_texture {
@@ -299,7 +303,7 @@ mod tests {
         for light in [hang(Vec3::NEG_Y, Vec3::X, 1), hang(Vec3::ONE, Vec3::X, 0), hang(Vec3::X, Vec3::X, 0)] {
             assert!(hang_in(light).validate().unwrap_err().message.contains("light 0"));
         }
-        let defects: [Defect; 32] = [
+        let defects: [Defect; 35] = [
             ("vertex 2", |s| s.meshes[0].positions[2].x = -1.1e15),
             ("Desk", |s| s.meshes[0].positions[1].y = f32::NAN),
             ("vertex 1", |s| s.meshes[0].positions[1].y = f32::INFINITY),
@@ -316,6 +320,9 @@ mod tests {
             ("Oak", |s| s.materials[0].ior = 0.5),
             ("Oak", |s| s.materials[0].thickness = -1.0),
             ("Oak", |s| s.materials[0].specular.strength = 1.5),
+            ("Oak", |s| s.materials[0].coat.strength = f32::NAN),
+            ("Oak", |s| s.materials[0].coat.roughness = -0.5),
+            ("Oak", |s| s.materials[0].coat.texture = Some(TextureRef::new(1))),
             ("Oak", |s| s.materials[0].specular.color.y = -1.0),
             ("Oak", |s| s.materials[0].specular.color_texture = Some(TextureRef::new(1))),
             ("Oak", |s| s.materials[0].attenuation_color.y = f32::NAN),

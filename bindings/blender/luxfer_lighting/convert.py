@@ -129,8 +129,9 @@ def edited(glb: bytes, *changes: Callable[[dict[str, Any]], None] | None) -> byt
 
 
 def specular_levels(document: dict[str, Any]) -> None:
-    """Replaces the specular factors (KHR_materials_specular) by the index of refraction with equal reflectance at normal
-    incidence, as Cycles does: at grazing angles, the reflectance then stays 1. The colours of the reflections remain."""
+    """Replaces the specular factors (KHR_materials_specular) by the index of refraction with equal reflectance at
+    normal incidence, as Cycles does: at grazing angles, the reflectance then stays 1. The colours of the reflections
+    remain."""
     for material in document.get("materials", ()):
         extensions = material.get("extensions", {})
         specular = extensions.get("KHR_materials_specular", {})

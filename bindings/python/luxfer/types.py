@@ -1088,6 +1088,8 @@ class Scattering(IntFlag):
     """At least one surface is partly transparent because of its alpha."""
     REFRACTION = 32
     """At least one body is solid glass, which refracts."""
+    CLEAR_COAT = 64
+    """At least one surface has a clear coat (KHR_materials_clearcoat)."""
 
 
 class View(IntFlag):

@@ -5,7 +5,7 @@ use super::*;
 use crate::render::compiled_material::{self, PointValues};
 use crate::render::tests::chi2::assert_follows;
 use crate::rng::Rng;
-use crate::scene::{Material, Specular};
+use crate::scene::{ClearCoat, Material, Specular};
 use std::f32::consts::TAU;
 
 /// Parameters for three roughnesses, each with a metallic share of 0, 0.4 and 1. The last entry is purely diffuse.
@@ -22,6 +22,7 @@ fn all_bsdf_params() -> Vec<BsdfParams> {
                 transmission: Vec3::ZERO,
                 dielectric_f0: 0.04,
                 dielectric_f90: 1.0,
+                coat: CoatParams::NONE,
             });
         }
     }
@@ -35,6 +36,12 @@ fn all_bsdf_params() -> Vec<BsdfParams> {
             roughness: 0.5,
             ..Material::default()
         };
+        all.push(compiled(&material));
+    }
+    // Clear coats over a matt surface, over a dielectric, and over a metal.
+    for (ior, metallic, strength, roughness) in [(1.0, 0.0, 1.0, 0.3), (1.5, 0.2, 0.6, 0.3), (1.5, 1.0, 1.0, 0.6)] {
+        let coat = ClearCoat { strength, roughness, ..ClearCoat::default() };
+        let material = Material { ior, metallic, base_color: colour, roughness: 0.5, coat, ..Material::default() };
         all.push(compiled(&material));
     }
     all
@@ -64,12 +71,13 @@ fn matt(colour: Vec3) -> BsdfParams {
         transmission: Vec3::ZERO,
         dielectric_f0: 0.0,
         dielectric_f90: 0.0,
+        coat: CoatParams::NONE,
     }
 }
 
 /// The BSDF seen from `wo`; the normal is the z axis.
 fn seen<'a>(bsdf_params: &BsdfParams, wo: Vec3, table: &'a AlbedoTable) -> Bsdf<'a> {
-    Bsdf::new(bsdf_params, bsdf_params.f90 > 0.0, [Vec3::Z; 2], wo, Some(table))
+    Bsdf::new(bsdf_params, bsdf_params.is_layered(), [Vec3::Z; 2], wo, Some(table))
 }
 
 fn direction(cosine: f32, angle: f32) -> Vec3 {
@@ -216,6 +224,111 @@ fn the_specular_strength_is_a_factor_and_the_colour_tints_normal_incidence() {
         assert_eq!((none.diffuse, none.f0, none.f90), (matt.diffuse, matt.f0, matt.f90));
         assert_eq!((none.f90, none.dielectric_f90), (metallic, 0.0));
     }
+}
+
+fn coat(strength: f32, roughness: f32) -> ClearCoat {
+    ClearCoat { strength, roughness, ..ClearCoat::default() }
+}
+
+#[test]
+fn a_coat_over_black_is_a_dielectric_over_black() {
+    let table = AlbedoTable::new();
+    let mut rng = Rng::new(16, &[]);
+    for roughness in [0.1, 0.5, 1.0] {
+        let black = Material { ior: 1.0, roughness, ..dielectric(1.0, Vec3::ZERO) };
+        let coated = compiled(&Material { coat: coat(1.0, roughness), ..black.clone() });
+        let half = compiled(&Material { coat: coat(0.5, roughness), ..black.clone() });
+        let expected = compiled(&Material { ior: 1.5, ..black });
+        for _ in 0..200 {
+            let wo = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
+            let wi = direction(rng.next_f32() * 0.98 + 0.01, TAU * rng.next_f32());
+            let of = |params: &BsdfParams| seen(params, wo, &table).eval(wi);
+            let ((coat, pdf), (half, _), (lobes, expected)) = (of(&coated), of(&half), of(&expected));
+            assert!((coat.glossy - lobes.glossy).abs().max_element() <= 1e-5 * lobes.glossy.x, "{coat:?} {lobes:?}");
+            assert!((half.glossy - lobes.glossy * 0.5).abs().max_element() <= 1e-5 * lobes.glossy.x, "{half:?}");
+            assert!(coat.diffuse == Vec3::ZERO && pdf == expected, "{pdf} and {expected}");
+        }
+    }
+    // Without roughness, the coat is a mirror.
+    let mirror = compiled(&Material { ior: 1.0, coat: coat(0.5, 0.0), ..dielectric(1.0, Vec3::ZERO) });
+    let sample = seen(&mirror, direction(0.3, 0.7), &table).sample(Vec2::splat(0.5)).unwrap();
+    let expected = 0.5 * ggx::schlick(Vec3::splat(0.04), 1.0, 0.3);
+    assert!(sample.kind == ScatterKind::Mirror && (sample.weight - expected).abs().max_element() < 1e-6);
+}
+
+#[test]
+fn a_coat_without_share_changes_no_bit() {
+    let table = AlbedoTable::new();
+    let mut rng = Rng::new(17, &[]);
+    for (number, bsdf_params) in all_bsdf_params().iter().enumerate() {
+        if bsdf_params.coat != CoatParams::NONE || !bsdf_params.is_layered() {
+            continue;
+        }
+        let absent = BsdfParams { coat: CoatParams { share: 0.0, roughness: 0.5 }, ..*bsdf_params };
+        for _ in 0..50 {
+            let wo = direction(rng.next_f32(), TAU * rng.next_f32());
+            let u = Vec2::new(rng.next_f32(), rng.next_f32());
+            let of = |params: &BsdfParams| {
+                let bsdf = seen(params, wo, &table);
+                let sample = bsdf.sample(u).map(|s| (s.direction, s.weight, s.lobes, s.kind));
+                (sample, bsdf.colour(), bsdf.is_shareable(), bsdf.has_non_specular())
+            };
+            assert_eq!(of(&absent), of(bsdf_params), "bsdf_params {number}");
+        }
+    }
+}
+
+/// White furnace test: below a coat, a matt surface and a smooth mirror lose no light, and no surface makes light.
+#[test]
+fn a_white_surface_below_a_coat_makes_no_light() {
+    let table = AlbedoTable::new();
+    let white = Material { roughness: 0.0, metallic: 0.0, ..Material::diffuse("White", Vec3::ONE) };
+    let bases = [
+        ("matt", white.clone()),
+        ("smooth dielectric", Material { ior: 1.5, ..white.clone() }),
+        ("rough dielectric", Material { ior: 1.5, roughness: 0.5, ..white.clone() }),
+        ("dense dielectric", Material { ior: 2.4, roughness: 0.3, ..white.clone() }),
+        ("mirror", Material { metallic: 1.0, ..white.clone() }),
+        ("rough metal", Material { metallic: 1.0, roughness: 0.5, ..white.clone() }),
+        ("half metal", Material { ior: 1.5, metallic: 0.5, roughness: 0.4, ..white.clone() }),
+        ("pane", Material { ior: 1.5, transmission: 1.0, ..white }),
+    ];
+    for (name, base) in bases {
+        for (strength, roughness) in [(1.0, 0.0), (0.5, 0.0), (1.0, 0.1), (0.7, 0.3), (1.0, 0.6), (1.0, 1.0)] {
+            let bsdf_params = compiled(&Material { coat: coat(strength, roughness), ..base.clone() });
+            for view in [1.0, 0.7, 0.3, 0.05] {
+                let (mean, error) = albedo(&bsdf_params, view, &table);
+                let what = format!("{name} below {strength} of roughness {roughness}, view {view}: {mean} ± {error}");
+                assert!(mean <= 1.0 + 4.5 * error + 0.003, "{what}");
+                // The table of the albedo has an error of at most 0.5 %.
+                let is_lossless = ["matt", "smooth dielectric", "mirror"].contains(&name);
+                assert!(!is_lossless || mean > 1.0 - 4.5 * error - 0.01, "{what}");
+                // What is sampled but not evaluated is the mirrored and the straight light.
+                if roughness == 0.0 && name == "matt" {
+                    let mirrored = strength * ggx::schlick(Vec3::splat(0.04), 1.0, view).x;
+                    let expected = f64::from(mirrored) + integrated_albedo(&bsdf_params, view, &table);
+                    assert!((mean - expected).abs() < 4.5 * error + 1e-3, "{what}, expected {expected}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn smooth_coats_are_mirrors_that_pixels_do_not_share() {
+    let table = AlbedoTable::new();
+    let of = |strength: f32, roughness: f32, base: Vec3| {
+        let params = compiled(&Material { coat: coat(strength, roughness), ..Material::diffuse("", base) });
+        let bsdf = seen(&params, direction(0.8, 0.1), &table);
+        (bsdf.is_diffuse(), bsdf.is_shareable(), bsdf.has_non_specular())
+    };
+    assert_eq!(of(0.0, 0.0, Vec3::ONE), (true, true, true));
+    assert_eq!(of(1.0, 0.0, Vec3::ONE), (false, false, true));
+    assert_eq!(of(1.0, 0.0, Vec3::ZERO), (false, false, false));
+    assert_eq!(of(1.0, 0.05, Vec3::ZERO), (false, false, true));
+    assert_eq!(of(1.0, 0.2, Vec3::ZERO), (false, true, true));
+    let params = compiled(&Material { coat: coat(0.5, 0.2), ..Material::diffuse("", Vec3::ONE) });
+    assert_eq!(seen(&params, Vec3::Z, &table).colour(), Vec3::ONE);
 }
 
 #[test]

@@ -1,13 +1,15 @@
 //! Writes a scene as a single GLB file.
 
-use super::features::{IES, IS_POINT, SPECULAR};
+use super::features::{CLEAR_COAT, IES, IS_POINT, SPECULAR};
 use super::material::transform_matrix;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::colour::srgb_to_linear;
 use crate::image::io::{self, Encoding};
 use crate::maths;
 use crate::photometry::ies;
-use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Scene, Specular, TextureRef, Wrap, c90};
+use crate::scene::{
+    AlphaMode, Camera, ClearCoat, Material, Mesh, PunctualLight, Scene, Specular, TextureRef, Wrap, c90,
+};
 use glam::{DMat3, DQuat, DVec3, Mat3, Vec2, Vec3};
 use serde_json::{Map, Value, json};
 
@@ -289,6 +291,11 @@ impl Writer {
             self.uses(SPECULAR);
             extensions.insert(SPECULAR.into(), value);
         }
+        if material.coat != ClearCoat::default() {
+            let value = self.coat(scene, material)?;
+            self.uses(CLEAR_COAT);
+            extensions.insert(CLEAR_COAT.into(), value);
+        }
         if !extensions.is_empty() {
             out["extensions"] = extensions.into();
         }
@@ -299,6 +306,22 @@ impl Writer {
         let mut out = json!({ "specularFactor": specular.strength, "specularColorFactor": specular.color.to_array() });
         let textures = [("specularTexture", specular.texture), ("specularColorTexture", specular.color_texture)];
         self.textures_of(scene, &mut out, Encoding::Srgb, &textures)?;
+        Ok(out)
+    }
+
+    /// Writes a clear coat. It has the normals of the material, as it is rendered.
+    fn coat(&mut self, scene: &Scene, material: &Material) -> Result<Value> {
+        let coat = &material.coat;
+        let mut out = json!({ "clearcoatFactor": coat.strength, "clearcoatRoughnessFactor": coat.roughness });
+        let textures = [
+            ("clearcoatTexture", coat.texture),
+            ("clearcoatRoughnessTexture", coat.roughness_texture),
+            ("clearcoatNormalTexture", material.normal_texture),
+        ];
+        self.textures_of(scene, &mut out, Encoding::Linear, &textures)?;
+        if material.normal_texture.is_some() {
+            out["clearcoatNormalTexture"]["scale"] = material.normal_scale.into();
+        }
         Ok(out)
     }
 

@@ -22,12 +22,15 @@ pub const WEBP: &str = "EXT_texture_webp";
 /// Extension for the strength and the colour of the reflections of dielectrics.
 pub const SPECULAR: &str = "KHR_materials_specular";
 
+/// Extension for a clear layer on top of a material.
+pub const CLEAR_COAT: &str = "KHR_materials_clearcoat";
+
 /// Extension for materials of the specular-glossiness workflow.
 const GLOSSINESS: &str = "KHR_materials_pbrSpecularGlossiness";
 
 /// Extensions that this importer reads. A file that requires any other extension is refused. Of a material with
 /// variants, only the default variant is read.
-pub const READ: [&str; 17] = [
+pub const READ: [&str; 18] = [
     DRACO,
     IES,
     INSTANCING,
@@ -36,6 +39,7 @@ pub const READ: [&str; 17] = [
     WEBP,
     GLOSSINESS,
     SPECULAR,
+    CLEAR_COAT,
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
@@ -56,9 +60,8 @@ type Neutral = (&'static str, f64);
 
 /// Material extensions that are not rendered. For each: its name, the missing effect, and the properties that turn the
 /// effect off if they have their default values. [convention: glTF extensions]
-const MATERIALS: [(&str, &str, &[Neutral]); 6] = [
+const MATERIALS: [(&str, &str, &[Neutral]); 5] = [
     ("KHR_materials_anisotropy", "reflections are not stretched", &[("anisotropyStrength", 0.0)]),
-    ("KHR_materials_clearcoat", "there is no clear coat", &[("clearcoatFactor", 0.0)]),
     ("KHR_materials_diffuse_transmission", "no light passes diffusely", &[("diffuseTransmissionFactor", 0.0)]),
     ("KHR_materials_dispersion", "all wavelengths are refracted alike", &[("dispersion", 0.0)]),
     ("KHR_materials_iridescence", "thin films have no colours", &[("iridescenceFactor", 0.0)]),
@@ -66,11 +69,14 @@ const MATERIALS: [(&str, &str, &[Neutral]); 6] = [
 ];
 
 /// Material extensions that are rendered, except for solid glass. The columns are those of [`MATERIALS`].
-const NOT_ON_SOLIDS: [(&str, &str, &[Neutral]); 1] = [(
-    SPECULAR,
-    "reflections of solid glass have their usual strength and colour",
-    &[("specularFactor", 1.0), ("specularColorFactor", 1.0)],
-)];
+const NOT_ON_SOLIDS: [(&str, &str, &[Neutral]); 2] = [
+    (
+        SPECULAR,
+        "reflections of solid glass have their usual strength and colour",
+        &[("specularFactor", 1.0), ("specularColorFactor", 1.0)],
+    ),
+    (CLEAR_COAT, "there is no clear coat on solid glass", &[("clearcoatFactor", 0.0)]),
+];
 
 /// The arrays of objects in the JSON, and the word by which a message names one object of each array.
 const LISTS: [(&str, &str); 10] = [
@@ -97,6 +103,7 @@ pub fn unrendered(document: &Value) -> Vec<Unrendered> {
                 "materials" => {
                     glossiness(&mut list, object, &place);
                     solid(&mut list, object, &place);
+                    coat_normals(&mut list, object, &place);
                 }
                 "meshes" => mesh(&mut list, object, &place),
                 "nodes" => weights(&mut list, object, shown(document, object), &place),
@@ -168,6 +175,16 @@ fn solid(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> Strin
                 note(list, name, effect, place);
             }
         }
+    }
+}
+
+/// Reports a clear coat whose normal texture is not that of its material.
+fn coat_normals(list: &mut Vec<Unrendered>, material: &Value, place: &dyn Fn() -> String) {
+    let Some(coat) = material.get("extensions").and_then(|extensions| extensions.get(CLEAR_COAT)) else { return };
+    if !does_nothing(coat, &[("clearcoatFactor", 0.0)])
+        && coat.get("clearcoatNormalTexture") != material.get("normalTexture")
+    {
+        note(list, CLEAR_COAT, "the clear coat has the normals of the material below", place);
     }
 }
 

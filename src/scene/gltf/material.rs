@@ -2,14 +2,14 @@
 
 use super::Budget;
 use super::container::{File, missing};
-use super::features::SPECULAR;
+use super::features::{CLEAR_COAT, SPECULAR};
 use super::glossiness::{self, Colours};
-use super::settings::Settings;
+use super::settings::ExtensionSettings;
 use crate::error::{Error, ErrorKind, Result};
 use crate::image::Image;
 use crate::image::io::{self, Encoding, MAX_PIXELS};
 use crate::maths;
-use crate::scene::{AlphaMode, MAX_LIGHT, Material, Specular, Texture, TextureRef, Wrap};
+use crate::scene::{AlphaMode, ClearCoat, MAX_LIGHT, Material, Specular, Texture, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3};
 use gltf::json::extensions::material::PbrSpecularGlossiness;
 use gltf::json::validation::Checked;
@@ -101,7 +101,8 @@ impl<'a> Materials<'a> {
             double_sided: json.double_sided,
             transmission: transmission.clamp(0.0, 1.0),
             ior: if ior == 0.0 { 1.5 } else { ior.max(1.0) },
-            specular: self.specular(&Settings::new(json, SPECULAR))?,
+            specular: self.specular(&ExtensionSettings::new(json, SPECULAR))?,
+            coat: self.coat(&ExtensionSettings::new(json, CLEAR_COAT))?,
             // The texture of the thickness only serves renderers that do not trace rays.
             thickness: volume.map_or(0.0, |v| v.thickness_factor.0.clamp(0.0, f32::MAX)),
             attenuation_color: volume
@@ -125,13 +126,28 @@ impl<'a> Materials<'a> {
         })
     }
 
-    fn specular(&mut self, settings: &Settings) -> Result<Specular> {
+    fn specular(&mut self, settings: &ExtensionSettings) -> Result<Specular> {
         // Both textures may be one image with colour and alpha. The encoding does not change the alpha.
         Ok(Specular {
             strength: settings.number("specularFactor", 1.0)?.clamp(0.0, 1.0),
             texture: self.optional(settings.texture("specularTexture")?.as_ref(), Encoding::Srgb)?,
             color: settings.colour("specularColorFactor", 1.0)?.clamp(Vec3::ZERO, Vec3::splat(MAX_LIGHT)),
             color_texture: self.optional(settings.texture("specularColorTexture")?.as_ref(), Encoding::Srgb)?,
+        })
+    }
+
+    /// Reads a clear coat; a coat without strength is no coat.
+    fn coat(&mut self, settings: &ExtensionSettings) -> Result<ClearCoat> {
+        let strength = settings.number("clearcoatFactor", 0.0)?.clamp(0.0, 1.0);
+        if strength == 0.0 {
+            return Ok(ClearCoat::default());
+        }
+        Ok(ClearCoat {
+            strength,
+            texture: self.optional(settings.texture("clearcoatTexture")?.as_ref(), Encoding::Linear)?,
+            roughness: settings.number("clearcoatRoughnessFactor", 0.0)?.clamp(0.0, 1.0),
+            roughness_texture: self
+                .optional(settings.texture("clearcoatRoughnessTexture")?.as_ref(), Encoding::Linear)?,
         })
     }
 

@@ -1,7 +1,8 @@
 //! glTF 2.0 import and export: GLB, or JSON with embedded or external buffers and images.
 //!
 //! Specification: Khronos, glTF 2.0 (ISO/IEC 12113:2022), with `KHR_lights_punctual`, `KHR_texture_transform`,
-//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_volume`, `_specular`, `_pbrSpecularGlossiness` (converted),
+//! `KHR_materials_emissive_strength`, `_ior`, `_transmission`, `_volume`, `_specular`, `_clearcoat` (without a normal
+//! texture of its own), `_pbrSpecularGlossiness` (converted),
 //! `_unlit` (read as an ordinary material), `_variants` (the default one), `KHR_mesh_quantization`,
 //! `KHR_draco_mesh_compression`, `EXT_meshopt_compression`, `KHR_meshopt_compression`, `EXT_mesh_gpu_instancing`,
 //! `EXT_texture_webp` and `EXT_lights_ies` (type C).
@@ -12,7 +13,7 @@
 //!
 //! Not imported: animation, morph targets of colours and texture coordinates, tangents (the renderer derives them),
 //! occlusion textures, points and lines, orthographic cameras, more than two sets of texture coordinates, and the
-//! properties of other material extensions such as `KHR_materials_clearcoat` and `_sheen`. An extension
+//! properties of other material extensions such as `KHR_materials_sheen`. An extension
 //! not listed above is an error if the file requires it, and is ignored otherwise. [`Scene::unrendered`] lists the
 //! visible features of the file that are not rendered.
 //!

@@ -8,13 +8,13 @@ use serde_json::Value;
 
 /// The settings of one extension of a material.
 #[derive(Clone, Copy)]
-pub struct Settings<'a> {
+pub struct ExtensionSettings<'a> {
     name: &'a str,
     /// `None` if the material does not have the extension.
     value: Option<&'a Value>,
 }
 
-impl<'a> Settings<'a> {
+impl<'a> ExtensionSettings<'a> {
     pub fn new(material: &'a Material, name: &'a str) -> Self {
         Self { name, value: material.extensions.as_ref().and_then(|extensions| extensions.others.get(name)) }
     }

@@ -3,7 +3,7 @@ use crate::error::{Error, ErrorKind};
 use crate::image::Image;
 use crate::photometry::Luminaire;
 use crate::rng::Rng;
-use crate::scene::{AlphaMode, Camera, Material, Mesh, PunctualLight, Specular, Texture, TextureRef, Wrap};
+use crate::scene::{AlphaMode, Camera, ClearCoat, Material, Mesh, PunctualLight, Specular, Texture, TextureRef, Wrap};
 use glam::{Mat3, Vec2, Vec3};
 use serde_json::{Value, json};
 use std::cell::Cell;
@@ -35,6 +35,13 @@ fn materials() -> Vec<Material> {
         },
         ..Material::diffuse("Oak", Vec3::ONE)
     };
+    let coat = ClearCoat {
+        strength: 0.5,
+        texture: Some(TextureRef::new(2)),
+        roughness: 0.25,
+        roughness_texture: Some(TextureRef { uv_set: 1, ..TextureRef::new(2) }),
+    };
+    let oak = Material { coat, ..oak };
     let lamp = Material {
         emission: Vec3::new(100.0, 50.0, 25.0),
         emission_texture: Some(TextureRef { uv_set: 1, ..TextureRef::new(1) }),
@@ -114,6 +121,7 @@ fn a_scene_is_unchanged_by_export_and_import() {
     let (before, glb) = (scene(), export(&scene()).unwrap());
     let after = import(&glb, None).unwrap();
     assert_eq!(after.meshes, before.meshes);
+    assert!(after.unrendered.is_empty(), "{:?}", after.unrendered);
     assert_eq!(after.cameras.len(), 1);
     let (c, d) = (&after.cameras[0], &before.cameras[0]);
     assert!(c.name == "View" && near(c.position, d.position) && near(c.forward, d.forward) && near(c.up, d.up));
@@ -128,6 +136,8 @@ fn a_scene_is_unchanged_by_export_and_import() {
         assert_eq!((a.base_color, numbers(a)), (b.base_color, numbers(b)));
         let specular = |m: &Material| (m.specular.strength, m.specular.color, m.specular.texture.map(|t| t.uv_set));
         assert_eq!(specular(a), specular(b));
+        let coat = |m: &Material| (m.coat.strength, m.coat.roughness, m.coat.roughness_texture.map(|t| t.uv_set));
+        assert_eq!(coat(a), coat(b));
         let volume = |m: &Material| (m.thickness, m.attenuation_color, m.attenuation_distance);
         assert_eq!(volume(a), volume(b));
         // Compare products of texture and factor, because the export may divide a texture by its peak and multiply the
@@ -150,6 +160,8 @@ fn a_scene_is_unchanged_by_export_and_import() {
                 |m: &Material| m.metallic_roughness_texture,
                 |m: &Material| m.specular.texture,
                 |m: &Material| m.specular.color_texture,
+                |m: &Material| m.coat.texture,
+                |m: &Material| m.coat.roughness_texture,
             ] {
                 if pick(b).is_some() {
                     assert!((look(&after, pick(a)) - look(&before, pick(b))).length() < 0.01);

@@ -105,9 +105,8 @@ fn valid_files_in_unusual_forms_are_read() {
 }
 
 /// The material extensions that are not rendered.
-const UNRENDERED_MATERIALS: [&str; 6] = [
+const UNRENDERED_MATERIALS: [&str; 5] = [
     "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",
     "KHR_materials_diffuse_transmission",
     "KHR_materials_dispersion",
     "KHR_materials_iridescence",
@@ -118,7 +117,6 @@ const UNRENDERED_MATERIALS: [&str; 6] = [
 fn each_feature_that_is_not_rendered_is_named() {
     let settings = [
         json!({ "anisotropyStrength": 0.5 }),
-        json!({ "clearcoatFactor": 1 }),
         json!({ "diffuseTransmissionFactor": 0.25 }),
         json!({ "dispersion": 0.1 }),
         json!({ "iridescenceFactor": 1.0 }),
@@ -205,12 +203,58 @@ fn specular_reflection_is_read_and_brought_into_range() {
     }
 }
 
+#[test]
+fn clear_coats_are_read_and_brought_into_range() {
+    let read = |settings: Value| with_extension("KHR_materials_clearcoat", &settings).coat;
+    let unused = json!({ "clearcoatRoughnessFactor": 1, "clearcoatTexture": { "index": 0 } });
+    assert_eq!((read(json!({})), read(unused)), (ClearCoat::default(), ClearCoat::default()));
+    let found = read(json!({ "clearcoatFactor": 7, "clearcoatRoughnessFactor": -1 }));
+    assert_eq!(found, ClearCoat { strength: 1.0, ..ClearCoat::default() });
+    let found = read(json!({
+        "clearcoatFactor": 0.5,
+        "clearcoatTexture": { "index": 0 },
+        "clearcoatRoughnessFactor": 0.25,
+        "clearcoatRoughnessTexture": { "index": 0, "texCoord": 1 }
+    }));
+    let texture = Some(TextureRef::new(0));
+    let roughness_texture = Some(TextureRef { uv_set: 1, ..TextureRef::new(0) });
+    assert_eq!(found, ClearCoat { strength: 0.5, texture, roughness: 0.25, roughness_texture });
+    let broken = json!({ "KHR_materials_clearcoat": { "clearcoatFactor": [1] } });
+    assert_eq!(with_extensions(broken).unwrap_err().kind, ErrorKind::Format);
+}
+
+/// A coat has the normals of the material below. If the file states others, the difference is named.
+#[test]
+fn normals_of_a_coat_that_differ_from_the_material_are_named() {
+    let named = |strength: f32, normals: Value, coat_normals: Value| {
+        let texts = unrendered(|f| {
+            f["textures"] = json!([{}, {}]);
+            let coat = json!({ "clearcoatFactor": strength, "clearcoatNormalTexture": coat_normals });
+            f["materials"] = json!([{ "name": "Car", "extensions": { "KHR_materials_clearcoat": coat } }]);
+            f["materials"][0]["normalTexture"] = normals;
+            let drop_nulls = |object: &mut Value| object.as_object_mut().unwrap().retain(|_, value| !value.is_null());
+            drop_nulls(&mut f["materials"][0]["extensions"]["KHR_materials_clearcoat"]);
+            drop_nulls(&mut f["materials"][0]);
+        });
+        assert!(texts.iter().all(|text| text.contains("\"Car\"") && text.contains("has the normals of")));
+        texts.len()
+    };
+    let (flakes, bumps) = (json!({ "index": 0 }), json!({ "index": 1 }));
+    assert_eq!(named(1.0, Value::Null, Value::Null), 0);
+    assert_eq!(named(1.0, flakes.clone(), flakes.clone()), 0);
+    assert_eq!(named(1.0, flakes.clone(), Value::Null), 1);
+    assert_eq!(named(1.0, Value::Null, bumps.clone()), 1);
+    assert_eq!(named(1.0, flakes.clone(), bumps.clone()), 1);
+    assert_eq!(named(0.0, flakes, bumps), 0);
+}
+
 /// The extensions of the layers of a material are rendered, but not on solid glass, where they are named.
 #[test]
 fn layers_of_solid_glass_are_named() {
-    for (name, settings, neutral) in
-        [("KHR_materials_specular", json!({ "specularColorTexture": { "index": 0 } }), json!({ "specularFactor": 1 }))]
-    {
+    for (name, settings, neutral) in [
+        ("KHR_materials_specular", json!({ "specularColorTexture": { "index": 0 } }), json!({ "specularFactor": 1 })),
+        ("KHR_materials_clearcoat", json!({ "clearcoatFactor": 1 }), json!({ "clearcoatRoughnessFactor": 1 })),
+    ] {
         let named = |thickness: f32, settings: &Value| {
             let scene = with_extensions(json!({
                 name: settings,
@@ -294,6 +338,7 @@ fn extensions_that_are_required_are_rendered_or_refused_by_name() {
         "EXT_meshopt_compression",
         "EXT_texture_webp",
         "KHR_draco_mesh_compression",
+        "KHR_materials_clearcoat",
         "KHR_materials_pbrSpecularGlossiness",
         "KHR_materials_specular",
         "KHR_materials_variants",
