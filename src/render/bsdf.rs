@@ -506,6 +506,10 @@ impl<'a> SpecularLayers<'a> {
     }
 
     fn pass_through(&self, frame: &[Vec3; 3]) -> Option<BsdfSample> {
+        // The shares of the layers may add up to just below 1 although nothing passes through.
+        if self.through == Vec3::ZERO {
+            return None;
+        }
         let share = 1.0 - self.shares[0] - self.shares[1] - self.shares[2];
         let direction = -from_local(frame, self.wo);
         let scattered =

@@ -44,8 +44,8 @@ pub fn lamp_rims(plane: &Image, lights: &Image, photo: &Image, job: Job) -> Resu
     Ok(rims)
 }
 
-/// Whether the way from the nearest lamp through the pixel at x, y reaches the plane, or the border of the photo, within
-/// [`REACH`].
+/// Whether the way from the nearest lamp through the pixel at x, y reaches the plane, or the border of the photo,
+/// within [`REACH`].
 fn ends_at_plane(plane: &Image, lights: &Image, x: usize, y: usize) -> bool {
     let size = IVec2::new(plane.width as i32, plane.height as i32);
     let at = IVec2::new(x as i32, y as i32);

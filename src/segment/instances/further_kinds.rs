@@ -19,14 +19,14 @@ const ON_PLANE: f64 = 0.9;
 /// reflections and signs, are rarely as sharp and as high in contrast as the median painted lamp. Highlights on
 /// fittings are, but they are small. [bench photos:real]
 const ALONE: Limits = Limits { contrast: 1.5, negatives: 0.0, pixels: 150.0, area: 0.0, dimmer: 0.0, any_size: true };
-/// Maximum aspect (length over width on the face of the room) of a lamp of a further kind that lies on no lattice. Long
-/// bright strips are often gaps, edges and reflections. [convention]
+/// Maximum aspect (length over width on the face of the room) of a lamp of a further kind that lies on no lattice.
+/// Long bright strips are often gaps, edges and reflections. [convention]
 const COMPACT: f64 = 2.0;
 
 impl Search<'_> {
-    /// Adds the regions of each kind that no stroke touches, if enough regions of this kind lie on a lattice
-    /// ([`SeenLattice::find`]), or if they meet the limits [`ALONE`]. Only regions that stand apart from other lamps are
-    /// added. Without a box layout of the room nothing is added, because sizes are compared on its face.
+    /// Adds the regions of each kind that no stroke touches, if enough regions of the kind lie on a lattice
+    /// ([`SeenLattice::find`]), or if they meet the limits [`ALONE`]. Only regions that stand apart from other lamps
+    /// are added. Without a box layout of the room nothing is added, because sizes are compared on its face.
     pub fn add_further_kinds(
         &self,
         model: &LampLimits,
