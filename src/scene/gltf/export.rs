@@ -264,13 +264,29 @@ impl Writer {
         }
         let (factor, strength) = if emission.max_element() > 1.0 { split_peak(emission) } else { (emission, 1.0) };
         out["emissiveFactor"] = json!(factor.to_array());
+        if strength != 1.0 {
+            self.uses("KHR_materials_emissive_strength");
+            let value = json!({ "emissiveStrength": strength });
+            extensions.insert("KHR_materials_emissive_strength".into(), value);
+        }
+        self.add_extensions(scene, material, &mut extensions)?;
+        if !extensions.is_empty() {
+            out["extensions"] = extensions.into();
+        }
+        Ok(out)
+    }
+
+    /// Adds the extensions of a material to its JSON, without the one of its emission.
+    fn add_extensions(
+        &mut self,
+        scene: &Scene,
+        material: &Material,
+        extensions: &mut Map<String, Value>,
+    ) -> Result<()> {
         let mut extend = |name: &'static str, value: Value| {
             self.uses(name);
             extensions.insert(name.into(), value);
         };
-        if strength != 1.0 {
-            extend("KHR_materials_emissive_strength", json!({ "emissiveStrength": strength }));
-        }
         if material.transmission > 0.0 {
             extend("KHR_materials_transmission", json!({ "transmissionFactor": material.transmission }));
         }
@@ -296,10 +312,7 @@ impl Writer {
             self.uses(CLEAR_COAT);
             extensions.insert(CLEAR_COAT.into(), value);
         }
-        if !extensions.is_empty() {
-            out["extensions"] = extensions.into();
-        }
-        Ok(out)
+        Ok(())
     }
 
     fn specular(&mut self, scene: &Scene, specular: &Specular) -> Result<Value> {
