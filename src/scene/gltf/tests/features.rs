@@ -158,7 +158,7 @@ fn each_feature_that_is_not_rendered_is_named() {
 }
 
 /// Imports a triangle whose material has the extensions `extensions`. Texture 0 has one texel of the colour (0, 0, 0).
-fn with_extensions(extensions: Value) -> Result<Scene> {
+fn with_extensions(extensions: &Value) -> Result<Scene> {
     let file = triangle_file(|f| {
         let uri = "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVR4nGNgYGAAAAAEAAH2FzhVAAAAAElFTkSuQmCC";
         f["images"] = json!([{ "uri": uri }]);
@@ -172,7 +172,7 @@ fn with_extensions(extensions: Value) -> Result<Scene> {
 
 /// Imports a material with one extension, all of whose settings must be rendered.
 fn with_extension(name: &str, settings: &Value) -> Material {
-    let scene = with_extensions(json!({ name: settings })).unwrap();
+    let scene = with_extensions(&json!({ name: settings })).unwrap();
     assert!(scene.unrendered.is_empty() && scene.validate().is_ok(), "{settings}");
     scene.materials[0].clone()
 }
@@ -198,7 +198,7 @@ fn specular_reflection_is_read_and_brought_into_range() {
         json!({ "specularTexture": 3 }),
         json!({ "specularTexture": { "index": 1 } }),
     ] {
-        let error = with_extensions(json!({ "KHR_materials_specular": settings })).unwrap_err();
+        let error = with_extensions(&json!({ "KHR_materials_specular": settings })).unwrap_err();
         assert!(error.kind == ErrorKind::Format && error.message.contains("aterial"), "{settings}: {error}");
     }
 }
@@ -220,7 +220,7 @@ fn clear_coats_are_read_and_brought_into_range() {
     let roughness_texture = Some(TextureRef { uv_set: 1, ..TextureRef::new(0) });
     assert_eq!(found, ClearCoat { strength: 0.5, texture, roughness: 0.25, roughness_texture });
     let broken = json!({ "KHR_materials_clearcoat": { "clearcoatFactor": [1] } });
-    assert_eq!(with_extensions(broken).unwrap_err().kind, ErrorKind::Format);
+    assert_eq!(with_extensions(&broken).unwrap_err().kind, ErrorKind::Format);
 }
 
 /// A coat has the normals of the material below. If the file states others, the difference is named.
@@ -256,7 +256,7 @@ fn layers_of_solid_glass_are_named() {
         ("KHR_materials_clearcoat", json!({ "clearcoatFactor": 1 }), json!({ "clearcoatRoughnessFactor": 1 })),
     ] {
         let named = |thickness: f32, settings: &Value| {
-            let scene = with_extensions(json!({
+            let scene = with_extensions(&json!({
                 name: settings,
                 "KHR_materials_volume": { "thicknessFactor": thickness },
                 "KHR_materials_transmission": { "transmissionFactor": 1 }
