@@ -1,5 +1,5 @@
-//! glTF 2.0 metallic-roughness materials, with transmission for thin panes and for solid glass, and with the strength
-//! and colour of the reflections of dielectrics, and with a clear coat.
+//! glTF 2.0 metallic-roughness materials. They may transmit light as thin panes or as solid glass, state the strength
+//! and the colour of a dielectric's reflections, and have a clear coat.
 
 use glam::{Mat3, Vec3};
 

@@ -303,7 +303,7 @@ fn a_white_surface_below_a_coat_makes_no_light() {
                 // The table of the albedo has an error of at most 0.5 %.
                 let is_lossless = ["matt", "smooth dielectric", "mirror"].contains(&name);
                 assert!(!is_lossless || mean > 1.0 - 4.5 * error - 0.01, "{what}");
-                // What is sampled but not evaluated is the mirrored and the straight light.
+                // The integral leaves out the light that the coat mirrors, so its closed form is added.
                 if roughness == 0.0 && name == "matt" {
                     let mirrored = strength * ggx::schlick(Vec3::splat(0.04), 1.0, view).x;
                     let expected = f64::from(mirrored) + integrated_albedo(&bsdf_params, view, &table);

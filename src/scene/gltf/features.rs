@@ -68,7 +68,8 @@ const MATERIALS: [(&str, &str, &[Neutral]); 5] = [
     ("KHR_materials_sheen", "there is no sheen of cloth", &[("sheenColorFactor", 0.0)]),
 ];
 
-/// Material extensions that are rendered, except for solid glass. The columns are those of [`MATERIALS`].
+/// Material extensions that are rendered on all materials but solid glass. The columns are the same as in
+/// [`MATERIALS`].
 const NOT_ON_SOLIDS: [(&str, &str, &[Neutral]); 2] = [
     (
         SPECULAR,
