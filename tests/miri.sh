@@ -17,5 +17,5 @@ cargo +nightly miri test --locked --lib -- ffi:: image::view image::buffer reser
 
 # Test the contract as a host uses it. Ignore leaks, because rayon keeps its queues for the lifetime of the process.
 # Skip the test that fills a MiB, which would take minutes.
-MIRIFLAGS="$MIRIFLAGS -Zmiri-ignore-leaks" cargo +nightly miri test --locked --test abi_contract -- --skip the_memory_budget_holds
+MIRIFLAGS="$MIRIFLAGS -Zmiri-ignore-leaks" cargo +nightly miri test --locked --test abi contract:: -- --skip the_memory_budget_holds
 echo "miri: nothing found"

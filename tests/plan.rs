@@ -92,7 +92,7 @@ fn renderings_take_the_time_and_leave_the_error_that_was_expected() {
 #[test]
 fn what_is_expected_does_not_hang_on_the_seed() {
     let _alone = alone();
-    Pool::new(1).unwrap().run(|| {
+    Pool::new(0).unwrap().run(|| {
         for (scene, camera) in rooms() {
             let world = World::build(Arc::new(scene), Monitor::default().job()).unwrap();
             let params = Params { width: 288, height: 192, samples: 16, ..Params::default() };

@@ -10,7 +10,7 @@
 //! A patch is identified by its top-left pixel and always lies inside its image: an image of `W × H` pixels has
 //! `(W - w + 1) × (H - w + 1)` patches of width `w`.
 //!
-//! Profile, on the real pair of `tests/real_stylize.rs` at 1200 × 912 with 16 channels: a third of the time is spent
+//! Profile, on the real pair of `tests/real/stylize.rs` at 1200 × 912 with 16 channels: a third of the time is spent
 //! on distances, a quarter on choosing candidates, a seventh on voting, a twentieth on sorting errors. The images of
 //! exemplar and target take 32 bytes per pixel each. Both images are larger than the caches, but a tile of them fits.
 //! If a neighbour's match and a patch's own match continue each other, the neighbour offers no new candidate, so

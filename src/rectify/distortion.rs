@@ -76,11 +76,11 @@ const MAX_RESIDUAL: f64 = 0.25;
 const BIWEIGHT_LIMIT: f64 = 4.685;
 /// Assumed number of detected segments per physical line: a line may be detected in several pieces, and a frame has two
 /// sides. Segments of one line have dependent errors. The stated error is proportional to the square root of this
-/// number. The test prints the quantiles of true over stated error. [bench: `tests/real_rectify.rs`]
+/// number. The test prints the quantiles of true over stated error. [bench: `tests/real/rectify.rs`]
 const SEGMENTS_PER_LINE: f64 = 2.0;
 /// Standard deviation of `Distortion::corner` beyond its sampling error, because real lenses deviate from the model.
 /// The value is the root mean square of the estimates for views cut out of panoramas. Their true distortion is 0, apart
-/// from errors of stitching. [bench: `tests/real_rectify.rs`]
+/// from errors of stitching. [bench: `tests/real/rectify.rs`]
 const MODEL_ERROR: f64 = 0.009;
 
 /// Estimates the distortion of a lens whose optical axis meets the image in `centre`; `None` if there are too few

@@ -1,6 +1,6 @@
 // Contract of the C boundary for a C++ program that uses the header and the shared library as a plug-in does. Tests
 // what needs a real C or C++ caller: linkage, macros, threads of the host, and callbacks that call the library. The
-// rest is in tests/abi_contract.rs. The program calls the C functions, because bindings/cpp would prevent wrong
+// rest is in tests/abi/contract.rs. The program calls the C functions, because bindings/cpp would prevent wrong
 // handles and early releases.
 #include "check.hpp"
 

@@ -1,5 +1,5 @@
 //! Loads photos with known cameras and labelled sets of segments, and computes the errors of estimated vanishing
-//! points. `tests/real_rectify.rs` and `benches/vp.rs` share this module.
+//! points. `tests/real/rectify.rs` and `benches/vp.rs` share this module.
 //!
 //! Data are read from `LUXFER_TEST_DATA` (default `../shared/data`). Without data the tests are skipped; in CI they
 //! fail.

@@ -1,9 +1,7 @@
 //! Contract of `luxfer_job_start`, which runs a function of the caller as a job: result, message, progress,
 //! cancellation, waits inside the function, and release.
 
-mod host;
-
-use host::{context, image, made, message, scene, wait};
+use crate::host::{context, image, made, message, scene, wait};
 use luxfer::ffi::*;
 use std::ffi::c_void;
 use std::ptr::null_mut;

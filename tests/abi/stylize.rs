@@ -1,11 +1,7 @@
 //! Contract of stylisation at the C boundary: inputs in any order and of any size, pictures that are read while the
 //! job runs, updates of the artwork, partly painted exemplars, and errors that name their cause.
 
-#![cfg(feature = "stylize")]
-
-mod host;
-
-use host::{context, image, made, message, view, wait};
+use crate::host::{context, image, made, message, view, wait};
 use luxfer::ffi::*;
 use std::ffi::c_void;
 use std::ptr::{null, null_mut};

@@ -1,9 +1,7 @@
 //! Contract of the C boundary, checked through its functions: handles, versioned structs, image views, files, scenes
 //! and messages. Jobs are in `abi_jobs.rs`.
 
-mod host;
-
-use host::{context, image, made, message, scene, view, wait};
+use crate::host::{context, image, made, message, scene, view, wait};
 use luxfer::ffi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::{null, null_mut};

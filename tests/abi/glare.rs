@@ -1,9 +1,7 @@
 //! Glare of a room that a luminaire and an emissive lamp light: its picture shows the luminaire, or says that it lacks
 //! it, and the scene rates both. The lamp of the room is measured as a distribution.
 
-mod host;
-
-use host::{context, made, message, scene, wait};
+use crate::host::{context, made, message, scene, wait};
 use luxfer::ffi::*;
 use std::ffi::CStr;
 use std::ptr::null_mut;
@@ -124,7 +122,7 @@ fn a_picture_says_that_it_lacks_the_luminaire() {
         let (render, job) = rendered(context, scene);
         let beauty = made(|out| luxfer_render_get_image(render, LUXFER_RENDER_BEAUTY, out));
         let layer = made(|out| luxfer_render_get_layer(render, c"Luminance".as_ptr(), out));
-        for (image, unseen) in [(beauty, 1), (layer, 1), (host::image(context, 4, 4, 1.0), 0)] {
+        for (image, unseen) in [(beauty, 1), (layer, 1), (crate::host::image(context, 4, 4, 1.0), 0)] {
             let mut report = std::mem::zeroed::<luxfer_glare_report>();
             let size = size_of_val(&report);
             assert_eq!(luxfer_image_get_glare(image, 1.0, 0.0, &mut report, size), LUXFER_OK, "{}", message(context));

@@ -19,9 +19,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 
-#[path = "peer/statistics.rs"]
-mod statistics;
-use statistics::{Difference, statistics, welch};
+use crate::statistics::{Difference, statistics, welch};
 
 const SIDE: usize = 24;
 const BLOCK: usize = 4;

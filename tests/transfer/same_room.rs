@@ -3,7 +3,7 @@
 //! to the exposure.
 //!
 //! The camera is ideal and sees the whole ceiling from below. Lamps are clipped, as in any photo, but glow, noise and
-//! white balance are left to `transfer_demo`.
+//! white balance are left to `demo.rs`.
 
 use glam::{Vec3, vec3};
 use luxfer::exec::Pool;

@@ -1,8 +1,6 @@
 //! Tests stylisation on ebsynth's StyLit example, at a quarter of its size: a painted ball is the exemplar, and a
 //! rendered golem the target.
 
-#![cfg(feature = "stylize")]
-
 use luxfer::image::Image;
 use luxfer::image::io::{Encoding, load};
 use luxfer::image::pyramid::resize;

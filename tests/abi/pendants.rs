@@ -1,14 +1,13 @@
 //! Bodies of hanging lamps through the C functions: bad input, and rendered lamps whose bodies are known.
 
-#[path = "../benches/pendants/bodies.rs"]
+#[path = "../../benches/pendants/bodies.rs"]
 #[allow(dead_code)]
 mod bodies;
-mod host;
-#[path = "../benches/pendants/rendered.rs"]
+#[path = "../../benches/pendants/rendered.rs"]
 mod rendered;
 
+use crate::host::{context, image, made, message, scene, view};
 use bodies::BODIES;
-use host::{context, image, made, message, scene, view};
 use luxfer::ffi::*;
 use luxfer::image::Image;
 use rendered::{Photo, Setup, photograph};

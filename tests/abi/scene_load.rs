@@ -1,8 +1,6 @@
 //! Contract of loading scene files at the C boundary: settings, and warnings about the file.
 
-mod host;
-
-use host::{context, made, message};
+use crate::host::{context, made, message};
 use luxfer::ffi::*;
 use std::ffi::{CStr, CString, c_char};
 use std::path::PathBuf;

@@ -19,9 +19,6 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Arc;
 
-#[path = "peer/statistics.rs"]
-mod statistics;
-
 const CELLS: usize = 64;
 /// Cells along the side of a block; the test compares means over blocks.
 const BLOCK: usize = 8;
@@ -167,7 +164,7 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
     assert_eq!(tests, theirs[0].len());
     let (mut widest, mut worst, mut total) = (0.0f64, 0.0f64, [0.0; 2]);
     for number in 0..tests {
-        let difference = statistics::welch(&ours, &theirs, number, tests);
+        let difference = crate::statistics::welch(&ours, &theirs, number, tests);
         // Allow 0.4 % for the discretisation of the gradient: the spline that interpolates the pattern loses 1/600 of
         // it, and the cells of the map lose about as much.
         let size = if number < texels { difference.first } else { slope_size(&ours, number, texels) };
@@ -196,5 +193,5 @@ fn importance_and_slopes_are_mitsubas_adjoint_within_the_joint_confidence_interv
 /// Size of a channel's gradient: its largest component, because single components may be 0.
 fn slope_size(rows: &[Vec<f64>], number: usize, texels: usize) -> f64 {
     let channel = (number - texels) % 3;
-    (0..5).map(|i| statistics::statistics(rows, texels + 3 * i + channel).0.abs()).fold(0.0, f64::max)
+    (0..5).map(|i| crate::statistics::statistics(rows, texels + 3 * i + channel).0.abs()).fold(0.0, f64::max)
 }

@@ -1,8 +1,6 @@
 //! Contract of the outputs of rendering at the C boundary: layers, their OpenEXR file, previews, and illuminance.
 
-mod host;
-
-use host::{context, made, message, scene, wait};
+use crate::host::{context, made, message, scene, wait};
 use luxfer::ffi::*;
 use std::ffi::{CStr, CString, c_char};
 use std::ptr::{null, null_mut};
@@ -12,7 +10,7 @@ fn pixels(image: *mut luxfer_image) -> (usize, Vec<f32>) {
     unsafe {
         assert_eq!(luxfer_image_get_size(image, &mut width, &mut height, &mut channels), LUXFER_OK);
         let mut data = vec![0.0f32; (width * height * channels) as usize];
-        let view = luxfer_image_view { channels, ..host::view(width, height, &mut data) };
+        let view = luxfer_image_view { channels, ..crate::host::view(width, height, &mut data) };
         assert_eq!(luxfer_image_read(image, 0, &view), LUXFER_OK);
         assert_eq!(luxfer_release(image.cast()), LUXFER_OK);
         (channels as usize, data)
@@ -264,8 +262,8 @@ fn an_environment_image_lights_a_scene_from_where_it_says() {
     let (width, height) = (16u32, 8u32);
     let mut sky: Vec<f32> =
         (0..width * height * 3).map(|i| if i < width * height * 3 / 2 { 2.0 } else { 1.0 }).collect();
-    let sky = made(|out| unsafe { luxfer_image_create(context, &host::view(width, height, &mut sky), out) });
-    let below = host::image(context, 4, 2, -1.0);
+    let sky = made(|out| unsafe { luxfer_image_create(context, &crate::host::view(width, height, &mut sky), out) });
+    let below = crate::host::image(context, 4, 2, -1.0);
     let mut grid = unsafe { std::mem::zeroed::<luxfer_illuminance_grid>() };
     unsafe {
         assert_eq!(luxfer_scene_set_environment(scene, below, [1.0; 3].as_ptr()), LUXFER_INVALID_ARGUMENT);

@@ -1,8 +1,6 @@
 //! Contract of scenes at the C boundary: reading back meshes, materials and textures, and tracing rays.
 
-mod host;
-
-use host::{context, image, made, message, scene};
+use crate::host::{context, image, made, message, scene};
 use luxfer::ffi::*;
 use std::ptr::{null, null_mut};
 
@@ -172,7 +170,7 @@ fn materials_are_replaced_and_keep_their_textures() {
     let context = context(1);
     let scene = scene(context);
     let mut pixels = [0.5f32; 2 * 2 * 4];
-    let view = luxfer_image_view { channels: 4, ..host::view(2, 2, &mut pixels) };
+    let view = luxfer_image_view { channels: 4, ..crate::host::view(2, 2, &mut pixels) };
     let picture = made(|out| unsafe { luxfer_image_create(context, &view, out) });
     let dark = image(context, 2, 2, -1.0);
     unsafe {

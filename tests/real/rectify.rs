@@ -4,8 +4,7 @@
 //! Data are read from `LUXFER_TEST_DATA` (default `../shared/data`). Without data the tests are skipped; in CI they
 //! fail.
 
-mod truth;
-
+use crate::truth::{area, data, errors, given_set, labelled_photos, numbers, read_json};
 use glam::{DMat3, DVec2, DVec3};
 use luxfer::image::Image;
 use luxfer::image::io::{self, Encoding};
@@ -13,7 +12,6 @@ use luxfer::job::Monitor;
 use luxfer::rectify::{self, Params, UnwarpParams};
 use std::path::PathBuf;
 use std::time::Instant;
-use truth::{area, data, errors, given_set, labelled_photos, numbers, read_json};
 
 #[test]
 fn vanishing_points_of_photos_meet_their_truth() {

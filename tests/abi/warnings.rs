@@ -1,9 +1,7 @@
 //! Contract of warnings at the C boundary: a list of warnings never changes, its texts live as long as the list, and
 //! wrong arguments are errors.
 
-mod host;
-
-use host::{context, made, message, view, wait};
+use crate::host::{context, made, message, view, wait};
 use luxfer::ffi::*;
 use std::ffi::{CStr, c_char, c_void};
 use std::ptr::null_mut;

@@ -12,19 +12,34 @@ use luxfer::render::World;
 use luxfer::segment::StrokeSet;
 use luxfer::transfer::{Input, Params, Pattern, Scale, Stage, Transfer};
 use luxfer::warning::Code;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
+
+/// Width and height of the photo in pixels.
+const SIZE: [usize; 2] = [540, 360];
 
 /// Returns a small transfer with all inputs set, and the room that the photo shows.
-fn prepared(pool: &Pool, samples: u32, seed: u64) -> (Transfer, demo::Exemplar) {
+fn prepared(pool: &Pool) -> (Transfer, demo::Exemplar) {
+    static PHOTO: OnceLock<Arc<Image>> = OnceLock::new();
+    let photo = PHOTO.get_or_init(|| photo_of(pool, 16, 3)).clone();
+    prepared_with(photo)
+}
+
+fn photo_of(pool: &Pool, samples: u32, seed: u64) -> Arc<Image> {
     let room = demo::exemplar_room().unwrap();
     let camera = room.scene.cameras[room.camera].clone();
-    let size = photo::Params { width: 540, height: 360, samples, seed };
+    let size = photo::Params { width: SIZE[0], height: SIZE[1], samples, seed };
+    let scene = Arc::new(room.scene);
     let monitor = Monitor::default();
-    let scene = Arc::new(room.scene.clone());
     let (picture, _) = pool.run(|| photo::photograph(scene, &camera, &size, monitor.job())).unwrap();
+    Arc::new(picture)
+}
+
+fn prepared_with(photo: Arc<Image>) -> (Transfer, demo::Exemplar) {
+    let room = demo::exemplar_room().unwrap();
+    let camera = &room.scene.cameras[room.camera];
     let input = Input {
-        strokes: demo::strokes(&room, size.width, size.height).unwrap(),
-        photo: Some(Arc::new(picture)),
+        strokes: demo::strokes(&room, SIZE[0], SIZE[1]).unwrap(),
+        photo: Some(photo),
         scene: Some(Arc::new(demo::target_room().unwrap())),
         surface: "Ceiling".into(),
         ..Input::default()
@@ -42,7 +57,7 @@ fn prepared(pool: &Pool, samples: u32, seed: u64) -> (Transfer, demo::Exemplar) 
 #[test]
 fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
     let pool = Pool::new(0).unwrap();
-    let (mut transfer, room) = prepared(&pool, 16, 3);
+    let (mut transfer, room) = prepared(&pool);
     let monitor = Monitor::default();
     pool.run(|| transfer.run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap();
     assert_eq!(monitor.progress(), 1.0);
@@ -105,7 +120,7 @@ fn lamps_keep_their_size_and_spacing_and_the_ceiling_gets_its_colour() {
 fn noise_in_the_photo_does_not_change_the_design() {
     let pool = Pool::new(0).unwrap();
     for (samples, seed) in [(8, 3), (16, 4)] {
-        let (mut transfer, room) = prepared(&pool, samples, seed);
+        let (mut transfer, room) = prepared_with(photo_of(&pool, samples, seed));
         let monitor = Monitor::default();
         pool.run(|| transfer.run(Stage::View, Stage::Emission, monitor.job(), |_| {})).unwrap();
         let emission = transfer.results.emission.as_ref().unwrap();
@@ -123,7 +138,7 @@ fn noise_in_the_photo_does_not_change_the_design() {
 fn the_pattern_lies_on_the_surface_as_the_settings_state() {
     let pool = Pool::new(0).unwrap();
     let monitor = Monitor::default();
-    let (mut transfer, _) = prepared(&pool, 8, 3);
+    let (mut transfer, _) = prepared(&pool);
     pool.run(|| transfer.run(Stage::View, Stage::Unwarp, monitor.job(), |_| {})).unwrap();
     let mut lay = |pattern: Pattern, zones: &[DVec4]| {
         transfer.params.pattern = pattern;
@@ -178,7 +193,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
     let empty = pool.run(|| Transfer::default().run(Stage::View, Stage::Render, monitor.job(), |_| {})).unwrap_err();
     assert_eq!((empty.kind, empty.message.contains("set the photo")), (ErrorKind::InvalidOperation, true), "{empty}");
 
-    let (mut transfer, _) = prepared(&pool, 16, 3);
+    let (mut transfer, _) = prepared(&pool);
     let late = pool.run(|| transfer.run(Stage::Emission, Stage::Render, monitor.job(), |_| {})).unwrap_err();
     assert_eq!((late.kind, late.message.contains("run stage Lights")), (ErrorKind::InvalidOperation, true), "{late}");
     let backwards = pool.run(|| transfer.run(Stage::Render, Stage::View, monitor.job(), |_| {})).unwrap_err();
@@ -236,7 +251,7 @@ fn what_is_missing_is_named_and_a_cancelled_run_keeps_what_it_has() {
 #[test]
 fn without_strokes_the_ceiling_and_its_lamps_are_proposed_with_a_warning() {
     let pool = Pool::new(0).unwrap();
-    let (mut transfer, _) = prepared(&pool, 16, 3);
+    let (mut transfer, _) = prepared(&pool);
     let monitor = Monitor::default();
     pool.run(|| transfer.run(Stage::View, Stage::Lights, monitor.job(), |_| {})).unwrap();
     let masks = |transfer: &Transfer| {

@@ -1,0 +1,5 @@
+//! Comparisons with other renderers.
+
+mod adjoint;
+mod mitsuba;
+mod statistics;
