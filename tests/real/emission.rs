@@ -1,24 +1,18 @@
 //! Texture synthesis from photos of real ceilings, rectified to a view from straight below: each is continued to twice
 //! its width and height.
 
+use crate::truth::data;
 use glam::DVec2;
 use luxfer::emission::{Emission, Input, Law, Luminaire, Params, run};
 use luxfer::exec::Pool;
 use luxfer::image::io::{self, Encoding};
 use luxfer::image::{Image, colour};
 use luxfer::job::Monitor;
-use std::path::PathBuf;
 
 /// Loads a ceiling and the mask of its lights: the lamps that its JSON file lists or, if it lists none, the pixels
 /// whose luminance exceeds `threshold`. `None` without test data.
 fn ceiling(name: &str, threshold: f32) -> Option<(Image, Image)> {
-    let root = std::env::var("LUXFER_TEST_DATA").unwrap_or_else(|_| "../shared/data".into());
-    let folder = PathBuf::from(root).join("photo_truth/ceiling_ortho");
-    if !folder.is_dir() {
-        assert!(std::env::var("CI").is_err(), "{} is missing", folder.display());
-        eprintln!("skipped: {} is missing", folder.display());
-        return None;
-    }
+    let folder = data("photo_truth/ceiling_ortho")?;
     let photo = io::load(&folder.join(format!("{name}.jpg")), Encoding::Srgb).unwrap();
     let text = std::fs::read_to_string(folder.join(format!("{name}.json"))).unwrap();
     let truth: serde_json::Value = serde_json::from_str(&text).unwrap();

@@ -4,6 +4,7 @@
 //! The pictures are not part of the project; they are read from `LUXFER_TEST_DATA` (default `../shared/data`). If
 //! `LUXFER_TEST_OUTPUT` names a folder, overlays for inspection are written there.
 
+use crate::truth::{data, read_json};
 use glam::{DMat3, DVec2, DVec3, Vec3};
 use luxfer::exec::Pool;
 use luxfer::features::{self, DepthKind, DepthMap, PlaneStroke, RoomView};
@@ -13,30 +14,14 @@ use luxfer::image::io::{Encoding, encode_png, load, write_file};
 use luxfer::job::Monitor;
 use luxfer::rectify;
 use luxfer::segment::{self, strokes};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
-
-/// The data folder; without it tests are skipped, except in CI.
-fn data() -> Option<PathBuf> {
-    let default = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data");
-    let folder = std::env::var_os("LUXFER_TEST_DATA").map_or(default, PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    assert!(std::env::var_os("CI").is_none(), "{} is not there: set LUXFER_TEST_DATA", folder.display());
-    eprintln!("skipped: no test data in {}", folder.display());
-    None
-}
 
 fn write_picture(name: &str, image: &Image) {
     if let Some(folder) = std::env::var_os("LUXFER_TEST_OUTPUT") {
         let png = encode_png(image, 1.0).unwrap();
         write_file(&Path::new(&folder).join(name), &png).unwrap();
     }
-}
-
-fn json(path: &Path) -> serde_json::Value {
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
 /// The camera that a photo's JSON file states; its room axes follow from the vanishing points in the file.
@@ -130,12 +115,12 @@ fn iou(a: &Image, b: &Image) -> f64 {
 
 #[test]
 fn ceilings_and_their_lights_are_found_in_real_photos() {
-    let Some(data) = data() else { return };
+    let Some(data) = data("") else { return };
     let pool = Pool::new(0).unwrap();
     let mut failed = Vec::new();
     for Photo { name, path, lights: truth } in PHOTOS {
         let photo = load(&data.join(path), Encoding::Srgb).unwrap();
-        let known = camera(&json(&data.join(path).with_extension("json")));
+        let known = camera(&read_json(&data.join(path).with_extension("json")));
         let text = std::fs::read_to_string(
             Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/strokes").join(name).with_extension("txt"),
         );
@@ -189,9 +174,9 @@ fn ceilings_and_their_lights_are_found_in_real_photos() {
 
 #[test]
 fn measured_depth_gives_smooth_walls_and_upright_normals() {
-    let Some(data) = data() else { return };
+    let Some(data) = data("") else { return };
     let pool = Pool::new(0).unwrap();
-    let intrinsics = &json(&data.join("rgbd/rgbd.json"))["K"];
+    let intrinsics = &read_json(&data.join("rgbd/rgbd.json"))["K"];
     let k = |name: &str| intrinsics[name].as_f64().unwrap();
     let perspective = Perspective {
         focal: (k("fx") + k("fy")) / 2.0,

@@ -1,26 +1,13 @@
 //! Tests that scenes by other authors load quickly and that their surfaces are found.
 
+use crate::truth::data;
 use glam::Vec3;
 use luxfer::image::Image;
 use luxfer::scene::{Scene, gltf, surface};
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// Maximum time to load a scene in a debug build on two busy cores; a release build takes a fraction of it.
 const TIME_LIMIT: Duration = Duration::from_secs(20);
-
-/// The path of a test file. If it is missing, prints a message and returns `None`; panics in CI.
-fn data(name: &str) -> Option<PathBuf> {
-    let root = std::env::var_os("LUXFER_TEST_DATA")
-        .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
-    let path = root.join(name);
-    if path.exists() {
-        return Some(path);
-    }
-    assert!(std::env::var_os("CI").is_none(), "{} is missing", path.display());
-    println!("skipped: {} is missing", path.display());
-    None
-}
 
 fn load(name: &str) -> Option<Scene> {
     let path = data(name)?;

@@ -1,13 +1,13 @@
 //! Tests stylisation on ebsynth's StyLit example, at a quarter of its size: a painted ball is the exemplar, and a
 //! rendered golem the target.
 
+use crate::truth::data;
 use luxfer::image::Image;
 use luxfer::image::io::{Encoding, load};
 use luxfer::image::pyramid::resize;
 use luxfer::job::Monitor;
 use luxfer::patch::VoteMode;
 use luxfer::stylize::{Guide, Input, Output, Params, Range, run};
-use std::path::PathBuf;
 
 const SIZE: (usize, usize) = (300, 228);
 const GUIDES: [&str; 4] = ["fullgi", "dirdif", "dirspc", "indirb"];
@@ -19,13 +19,7 @@ struct Pair {
 
 /// Loads exemplar and target; returns `None` without test data, and panics in CI.
 fn pair() -> Option<Pair> {
-    let root = std::env::var("LUXFER_TEST_DATA").unwrap_or_else(|_| "../shared/data".to_string());
-    let folder = PathBuf::from(root).join("stylit/ebsynth_stylit");
-    if !folder.exists() {
-        assert!(std::env::var("CI").is_err(), "{} is missing", folder.display());
-        eprintln!("skipped: {} is missing", folder.display());
-        return None;
-    }
+    let folder = data("stylit/ebsynth_stylit")?;
     let read = |name: String| {
         let image = load(&folder.join(name), Encoding::Srgb).unwrap().to_rgb().unwrap();
         resize(&image, SIZE.0, SIZE.1, Monitor::default().job()).unwrap()

@@ -17,6 +17,7 @@ use luxfer::rectify::{Params, vanishing};
 use serde_json::Value;
 use std::path::PathBuf;
 
+/// Returns the path of a part of the test data. If it is missing, prints a message and returns `None`; panics in CI.
 pub fn data(part: &str) -> Option<PathBuf> {
     let root = std::env::var_os("LUXFER_TEST_DATA")
         .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/data"), PathBuf::from);
